@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artifact: one HDF5 file in which stages meet. Every data set carries `units` and `description`;
-// `/provenance` says where it comes from. HDF5 itself does not appear in this header, so that programs
-// with the parallel and the serial library share it.
+// The artifact: one HDF5 file in which stages meet. Every data set carries `units` and
+// `description`;
+// `/provenance` says where it comes from. HDF5 itself does not appear in this header, so that
+// programs with the parallel and the serial library share it.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,10 @@
 
 namespace meltproof {
 
-/// Writes an artifact under a temporary name beside its place; commit() renames it. Without commit()
-/// nothing is left behind. Data sets are named by their path ("fields/temperature"), groups are made
-/// as needed, and nothing volatile (clock, host) enters a data set, so equal results are equal bytes.
+/// Writes an artifact under a temporary name beside its place; commit() renames it. Without
+/// commit() nothing is left behind. Data sets are named by their path ("fields/temperature"),
+/// groups are made as needed, and nothing volatile (clock, host) enters a data set, so equal
+/// results are equal bytes.
 class ArtifactWriter {
  public:
   /// @param kind what the artifact is, for example "meltproof powder bed"; readers check it.
@@ -28,10 +30,12 @@ class ArtifactWriter {
   ArtifactWriter& operator=(const ArtifactWriter&) = delete;
 
   /// Writes a data set of `shape` (row-major; its product is values.size(); {} is a scalar).
-  void write(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& shape,
-             const std::string& units, const std::string& description);
-  void write(const std::string& name, std::span<const float> values, const std::vector<std::size_t>& shape,
-             const std::string& units, const std::string& description);
+  void write(const std::string& name, std::span<const double> values,
+             const std::vector<std::size_t>& shape, const std::string& units,
+             const std::string& description);
+  void write(const std::string& name, std::span<const float> values,
+             const std::vector<std::size_t>& shape, const std::string& units,
+             const std::string& description);
   void write(const std::string& name, std::span<const std::int64_t> values,
              const std::vector<std::size_t>& shape, const std::string& units,
              const std::string& description);
@@ -61,7 +65,8 @@ class ArtifactWriter {
               const std::string& description);
 
   /// A text attribute of the root group, or of `object` if given.
-  void attribute(const std::string& name, const std::string& value, const std::string& object = "/");
+  void attribute(const std::string& name, const std::string& value,
+                 const std::string& object = "/");
 
   /// Writes `/provenance`, closes the file and gives it its name. @throws std::runtime_error with a
   /// sentence if the disk is full.
@@ -89,6 +94,7 @@ class ArtifactReader {
   ~ArtifactReader();
   ArtifactReader(ArtifactReader&&) noexcept;
   ArtifactReader(const ArtifactReader&) = delete;
+  ArtifactReader& operator=(ArtifactReader&&) noexcept;
   ArtifactReader& operator=(const ArtifactReader&) = delete;
 
   bool has(const std::string& name) const;

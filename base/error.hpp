@@ -16,8 +16,8 @@ enum class ExitStatus : int {
   truncated = 4,  ///< the input ends early: results stand for its whole frames only
 };
 
-/// Something the user gave cannot be used. The message is one or two sentences that name the file and
-/// the key, frame or value, what was found, what was expected, and what to do.
+/// Something the user gave cannot be used. The message is one or two sentences that name the file
+/// and the key, frame or value, what was found, what was expected, and what to do.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// TOML input with units. A parameter is declared once (name, unit, default, bounds, description); that
-// declaration reads the file, refuses what is unknown or out of bounds, and yields the JSON Schema,
-// the reference page and the resolved input that goes into provenance.
+// TOML input with units. A parameter is declared once (name, unit, default, bounds, description);
+// that declaration reads the file, refuses what is unknown or out of bounds, and yields the JSON
+// Schema, the reference page and the resolved input that goes into provenance.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-
-namespace toml {
-inline namespace v3 {
-class node;
-class table;
-}  // namespace v3
-}  // namespace toml
 
 namespace meltproof {
 
@@ -43,8 +36,8 @@ struct Entry {
   long long maximum = std::numeric_limits<long long>::max();
 };
 
-/// One TOML table: its parameters bound to variables, its sub-tables and arrays of tables. The bound
-/// variables must outlive the table.
+/// One TOML table: its parameters bound to variables, its sub-tables and arrays of tables. The
+/// bound variables must outlive the table.
 class InputTable {
  public:
   InputTable(std::string name, std::string about);
@@ -68,10 +61,10 @@ class InputTable {
 
   /// Declares a sub-table; `present`, if given, is set to whether the file holds it.
   InputTable& table(InputTable declaration, bool* present = nullptr);
-  /// Declares an array of tables. For each element `make(index)` returns the declaration bound to the
-  /// element's own variables (append to a container with stable addresses, such as std::deque).
-  InputTable& tables(std::string name, std::string about, std::function<InputTable(std::size_t)> make,
-                     bool required = false);
+  /// Declares an array of tables. For each element `make(index)` returns the declaration bound to
+  /// the element's own variables (append to a container with stable addresses, such as std::deque).
+  InputTable& tables(std::string name, std::string about,
+                     std::function<InputTable(std::size_t)> make, bool required = false);
 
   const std::string& name() const;
 
@@ -88,9 +81,10 @@ class Input {
   Input(Input&&) noexcept;
   ~Input();
 
-  /// Reads `path` into the bound variables. `overrides` are "table.key=value" texts that replace what
-  /// the file says, with the value in TOML notation or bare (`laser.power=200 W`).
-  /// @throws InputError naming file, line and key for a missing file, a syntax error, an unknown key,
+  /// Reads `path` into the bound variables. `overrides` are "table.key=value" texts that replace
+  /// what the file says, with the value in TOML notation or bare (`laser.power=200 W`).
+  /// @throws InputError naming file, line and key for a missing file, a syntax error, an unknown
+  /// key,
   ///         a wrong unit or type, a value out of bounds, a missing required key.
   void read(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
   /// The same from text; `origin` stands for the file's name in messages.
@@ -102,7 +96,8 @@ class Input {
   nlohmann::json schema() const;
   /// The reference page in Markdown: key, unit, default, bounds, description.
   std::string reference() const;
-  /// Files that the last read() depended on: the input itself and every declared file that was given.
+  /// Files that the last read() depended on: the input itself and every declared file that was
+  /// given.
   const std::vector<std::filesystem::path>& files() const;
 
  private:

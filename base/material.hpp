@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature- and composition-dependent material properties. Enthalpy is the only source of specific
-// heat; temperature follows from it by an exact inverse.
+// Temperature- and composition-dependent material properties. Enthalpy is the only source of
+// specific heat; temperature follows from it by an exact inverse.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,8 @@ struct PiecewiseLinear {
   double slope(double temperature) const;  ///< to the right of a knot at the knot
 };
 
-/// One term a + b T + c (1 - exp(-d / T)) valid from a temperature on: enough for every printed law.
+/// One term a + b T + c (1 - exp(-d / T)) valid from a temperature on: enough for every printed
+/// law.
 struct PropertyPiece {
   double from = 0, to = 0;  ///< K
   double constant = 0;      ///< a
@@ -53,9 +54,9 @@ struct Material {
   Property surface_tension;                       ///< N m-1
 };
 
-/// Reads data/materials/<name>.toml. With `as_printed` the forms that the source prints are used where
-/// they can be evaluated (see the file's [as_printed] notes); enthalpy then is the printed, discontinuous
-/// one and may not be inverted. @throws InputError naming file, line and key.
+/// Reads data/materials/<name>.toml. With `as_printed` the forms that the source prints are used
+/// where they can be evaluated (see the file's [as_printed] notes); enthalpy then is the printed,
+/// discontinuous one and may not be inverted. @throws InputError naming file, line and key.
 Material read_material(const std::filesystem::path& path);
 
 /// How an inverted enthalpy is reported.
@@ -78,7 +79,8 @@ class Mixture {
   /// Mass-weighted solidus and liquidus, K.
   double solidus(double concentration) const;
   double liquidus(double concentration) const;
-  /// 0 at and below the solidus of the mixture, 1 at and above its liquidus, linear in enthalpy between.
+  /// 0 at and below the solidus of the mixture, 1 at and above its liquidus, linear in enthalpy
+  /// between.
   double liquid_fraction(double enthalpy, double concentration) const;
   double conductivity(double temperature, double concentration) const;
   double viscosity(double temperature, double concentration) const;
@@ -96,7 +98,8 @@ class Mixture {
 
  private:
   Material base_, additive_;
-  // The two enthalpies on the union of their knots, so that the inverse is one search and one division.
+  // The two enthalpies on the union of their knots, so that the inverse is one search and one
+  // division.
   std::vector<double> knots_, base_enthalpy_, additive_enthalpy_;
 };
 

@@ -14,8 +14,8 @@
 namespace meltproof {
 
 /// A command-line program: construct it, add options to `app`, then run().
-/// Gives every program `--help`, `--version`, `--quiet`, a footer with the exit statuses, and turns an
-/// InputError into "name: error: sentence" with status 2, any other exception into status 1.
+/// Gives every program `--help`, `--version`, `--quiet`, a footer with the exit statuses, and turns
+/// an InputError into "name: error: sentence" with status 2, any other exception into status 1.
 class Program {
  public:
   /// @param name "meltproof-solve"; @param about what it does, with an example a user can type.

@@ -16,7 +16,8 @@ class Progress {
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// @param done work done so far, in the units of total; @param detail a few words shown behind it.
+  /// @param done work done so far, in the units of total; @param detail a few words shown behind
+  /// it.
   void update(double done, const std::string& detail = "");
   /// Ends the line; called by the destructor.
   void finish();

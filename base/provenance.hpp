@@ -2,6 +2,7 @@
 // Where an artifact comes from: enough to make it again.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -38,10 +39,13 @@ struct Provenance {
   long long seed = 0;                            ///< of the random numbers; 0 if none were drawn
   int ranks = 1;
   int threads = 1;
-  double wall_time = 0;  ///< s, from the start of the program to the writing of the artifact
+  double wall_time = 0;  ///< s; set it to elapsed() before the artifact is written
+  std::chrono::steady_clock::time_point started;
 
   /// Adds a file with its checksum.
   void add_input(const std::filesystem::path& path);
+  /// Seconds since begin_provenance().
+  double elapsed() const;
   nlohmann::json json() const;
 };
 
