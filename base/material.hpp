@@ -4,10 +4,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace meltproof {
 
@@ -20,14 +19,14 @@ struct PiecewiseLinear {
   double slope(double temperature) const;  ///< to the right of a knot at the knot
 };
 
-/// One term a + b T + c (1 - exp(-d / T)) valid from a temperature on: enough for every printed
-/// law.
+/// One term a + b T + c (1 - exp(-d / T)) on a range: enough for every printed law.
 struct PropertyPiece {
   double from = 0, to = 0;  ///< K
   double constant = 0;      ///< a
   double linear = 0;        ///< b, 1/K
   double exponential = 0;   ///< c, evaluated as -c expm1(-d/T), which loses no digits
   double activation = 0;    ///< d, K
+  double operator()(double temperature) const;
 };
 
 /// A property as a function of temperature, held constant outside [first.from, last.to].
@@ -36,6 +35,25 @@ struct Property {
   std::vector<PropertyPiece> pieces;  ///< contiguous: each begins where the last one ends
   double floor = 0;                   ///< smallest value returned
   double operator()(double temperature) const;
+};
+
+/// The forms that the source prints, kept beside the repaired ones: they may jump, and enthalpy may
+/// not be inverted. Viscosity here includes the source's factor 20. `note` says what is wrong with
+/// each.
+struct PrintedForms {
+  Property enthalpy;         ///< J kg-1, zero where the printed line happens to cross
+  Property specific_heat;    ///< J kg-1 K-1
+  Property conductivity;     ///< W m-1 K-1
+  Property viscosity;        ///< Pa s
+  Property surface_tension;  ///< N m-1
+  double molar_mass = 0;     ///< kg mol-1
+};
+
+/// Which forms of a material are read.
+enum class Form {
+  repaired,   ///< continuous, invertible, real viscosity
+  as_printed  ///< the printed conductivity, viscosity (with its factor 20), surface tension, molar
+              ///< mass
 };
 
 /// One material. All SI.
@@ -52,12 +70,31 @@ struct Material {
   Property conductivity;                          ///< W m-1 K-1
   Property viscosity;                             ///< Pa s, real (without any stabilising factor)
   Property surface_tension;                       ///< N m-1
+  double real_density = 0;  ///< kg m-3, of the solid; `density` unless the file gives another
+  /// Standard uncertainties in the unit of the quantity, by its key, where the file states one.
+  std::map<std::string, double> uncertainty;
+  PrintedForms printed;
 };
 
-/// Reads data/materials/<name>.toml. With `as_printed` the forms that the source prints are used
-/// where they can be evaluated (see the file's [as_printed] notes); enthalpy then is the printed,
-/// discontinuous one and may not be inverted. @throws InputError naming file, line and key.
-Material read_material(const std::filesystem::path& path);
+/// Reads data/materials/<name>.toml. With Form::as_printed the printed forms replace the repaired
+/// ones where the engine can use them; enthalpy stays the repaired one, because the printed one
+/// cannot be inverted. @throws InputError naming file and key, also for pieces that leave gaps or
+/// jump.
+Material read_material(const std::filesystem::path& path, Form form = Form::repaired);
+
+/// D = prefactor exp(-activation_temperature / T), the diffusivity of the additive in the base
+/// (Eq. 6).
+struct Diffusivity {
+  std::string name, source, note;
+  double prefactor = 0;               ///< m2 s-1
+  double activation_temperature = 0;  ///< K
+  double from = 0, to = 0;            ///< K, where it was measured; extrapolated elsewhere
+  double operator()(double temperature) const;
+};
+
+/// Reads one law of data/materials/diffusivity.toml; an empty name is the file's default.
+/// @throws InputError naming file, key and the laws that there are.
+Diffusivity read_diffusivity(const std::filesystem::path& path, const std::string& law = "");
 
 /// How an inverted enthalpy is reported.
 struct ThermalState {
@@ -65,10 +102,13 @@ struct ThermalState {
   double liquid_fraction = 0;  ///< 1
 };
 
-/// Base powder and additive mixed by mass fraction of the additive. Both enthalpies are zero at the
-/// same temperature, so mixing needs no correction.
+/// Base powder and additive mixed by mass fraction of the additive: every property is weighted by
+/// mass, as the paper does (Section 2), except density, where volumes add. Both enthalpies are zero
+/// at the same temperature, so mixing needs no correction.
 class Mixture {
  public:
+  /// @throws InputError if an enthalpy does not rise everywhere or the two are zero at different
+  /// temperatures.
   Mixture(Material base, Material additive);
 
   /// h(T, C) = (1 - C) h_base(T) + C h_additive(T), J kg-1; strictly increasing in T.
