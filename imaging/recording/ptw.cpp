@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layout, all little endian. Main header: "CED" at 0; u32 at 11 and 15 the sizes of the main and of
+// a frame's header in bytes; u32 at 19 and 23 the sizes of a frame with and without its header in
+// 16-bit words (not bytes); u32 at 27 the number of frames; f32 at 141 emissivity, 145 ambient
+// temperature in K, 403 period in s, 407 integration time in s; u16 at 377 width, 379 height, 381
+// bits. Each frame is its header, then width x height u16. The frame's header stamps the time:
+// minute, hour, hundredth and second as bytes from 80 on.
+#include "imaging/recording/ptw.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "imaging/recording/bytes.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+constexpr auto little = std::endian::little;
+constexpr std::uint64_t smallest_header = 411;  // up to the integration time
+constexpr std::size_t stamp = 80, stamp_end = 84;
+
+/// The time of day in a frame's header, s.
+double time_of_day(const ByteFile& file, std::uint64_t frame_start) {
+  const std::string b = file.bytes(frame_start + stamp, stamp_end - stamp);
+  const auto at = [&](std::size_t i) {
+    return static_cast<double>(static_cast<unsigned char>(b[i]));
+  };
+  return at(1) * 3600 + at(0) * 60 + at(3) + at(2) * 0.01;
+}
+
+}  // namespace
+
+bool is_ptw(std::string_view first_bytes) {
+  // A text may begin with the same letters, so the byte behind them, which is no letter, counts
+  // too.
+  return first_bytes.size() > 4 && first_bytes.substr(0, 3) == "CED" && first_bytes[3] == '\0';
+}
+
+Recording open_ptw(const std::filesystem::path& path) {
+  const ByteFile file(path);
+  if (file.size() < smallest_header)
+    throw InputError(
+        fmt::format("{}: a PTW file begins with a header of at least {} bytes, but the file has "
+                    "{}; copy it again "
+                    "from its source.",
+                    path.string(), smallest_header, file.size()));
+  const std::string head = file.bytes(0, smallest_header);
+  const auto u32 = [&](std::size_t at) {
+    return std::uint64_t{number_at<std::uint32_t>(head, at, little)};
+  };
+  const auto u16 = [&](std::size_t at) {
+    return std::uint64_t{number_at<std::uint16_t>(head, at, little)};
+  };
+  const auto f32 = [&](std::size_t at) { return decimal(number_at<float>(head, at, little)); };
+
+  const std::uint64_t main_header = u32(11), frame_header = u32(15), words = u32(23),
+                      frames = u32(27);
+  const std::uint64_t width = u16(377), height = u16(379), bits = u16(381);
+  if (width == 0 || height == 0 || words != width * height || bits == 0 || bits > 16 ||
+      main_header < smallest_header)
+    throw InputError(
+        path.string() + ": the PTW header contradicts itself: " + std::to_string(width) + " x " +
+        std::to_string(height) + " pixels of " + std::to_string(bits) + " bits in frames of " +
+        std::to_string(words) + " 16-bit words; the file is damaged or of an unknown kind.");
+  const std::uint64_t stride = frame_header + 2 * words;
+  const std::uint64_t held = file.size() > main_header ? (file.size() - main_header) / stride : 0;
+
+  RecordingHeader header;
+  header.path = path;
+  header.width = width;
+  header.height = height;
+  // A recording that was broken off may say 0 frames or too few: what is there counts.
+  header.frames = held;
+  header.frames_lost = frames > held ? frames - held : 0;
+  if (held > frames)
+    header.notes.push_back(fmt::format(
+        "The header announces {} frames, but {} whole frames are there; all of them are read.",
+        frames, held));
+  const double period = f32(403);
+  if (std::isfinite(period) && period > 0) header.frame_rate = 1 / period;
+  if (std::isfinite(f32(407)) && f32(407) > 0) header.integration_time = f32(407);
+  header.saturation = std::ldexp(1.0, static_cast<int>(bits)) - 1;
+  header.under_range = 0;
+  header.calibration = {{"emissivity", f32(141)},
+                        {"ambient_temperature_K", f32(145)},
+                        {"bits", static_cast<double>(bits)}};
+
+  if (held > 1 && frame_header >= stamp_end && header.frame_rate > 0) {
+    const double elapsed =
+        time_of_day(file, main_header + (held - 1) * stride) - time_of_day(file, main_header);
+    const double announced = static_cast<double>(held - 1) / header.frame_rate;
+    // The stamps count hundredths of a second; a negative difference is midnight.
+    if (elapsed >= 0 && std::abs(elapsed - announced) > 0.05 + 0.02 * announced)
+      header.notes.push_back(
+          fmt::format("The header's frame period is {} s, but the clock in the frames advances by "
+                      "{:.4f} s a frame; "
+                      "times and speeds follow the header, so check which one is right.",
+                      period, elapsed / static_cast<double>(held - 1)));
+  }
+
+  return {header, [file, main_header, frame_header, stride](std::size_t index, Frame& frame) {
+            widen(file.bytes(main_header + index * stride + frame_header, 2 * frame.values.size()),
+                  little, frame.values);
+          }};
+}
+
+}  // namespace meltproof::imaging

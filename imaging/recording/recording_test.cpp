@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The readers against files that nobody here wrote; every number is published in the samples'
+// README.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "imaging/recording/flir_temperature.hpp"
+#include "imaging/recording/formats.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path samples = "../shared/samples";
+
+#define NEED_SAMPLE(name) \
+  if (!fs::exists(samples / (name))) GTEST_SKIP() << "the sample " << (name) << " is not here"
+
+constexpr const char* ptw = "cedip_pyradi_PyradiSampleMWIR.ptw";
+constexpr const char* seq = "flir_thermimage_SampleSEQ.seq";
+constexpr const char* tiff = "flir_flirpy_example_radiometric.tiff";
+constexpr const char* bmp = "meltpool_sample_img.bmp";
+
+double mean(const std::vector<float>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+float lowest(const std::vector<float>& v) { return *std::min_element(v.begin(), v.end()); }
+float highest(const std::vector<float>& v) { return *std::max_element(v.begin(), v.end()); }
+
+/// A folder of its own for each test, removed at the end.
+class Temporary {
+ public:
+  Temporary()
+      : path_(fs::temp_directory_path() /
+              fmt::format("meltproof-{}-{}",
+                          testing::UnitTest::GetInstance()->current_test_info()->name(),
+                          ::getpid())) {
+    fs::create_directories(path_);
+  }
+  ~Temporary() { fs::remove_all(path_); }
+  /// A file with these bytes.
+  fs::path file(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path_ / name, std::ios::binary) << bytes;
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string refusal(const fs::path& path) {
+  try {
+    open_recording(path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Ptw, ReadsThePyradiSample) {
+  NEED_SAMPLE(ptw);
+  const auto recording = open_recording(samples / ptw);
+  const auto& h = recording.header();
+  EXPECT_EQ(h.format, "Cedip PTW");
+  EXPECT_EQ(h.width, 69u);
+  EXPECT_EQ(h.height, 64u);
+  EXPECT_EQ(h.frames, 100u);
+  EXPECT_EQ(h.frames_lost, 0u);
+  EXPECT_DOUBLE_EQ(h.frame_rate, 100);
+  EXPECT_DOUBLE_EQ(h.integration_time, 500e-6);
+  EXPECT_EQ(h.saturation, 16383);
+  EXPECT_EQ(h.quantity, SignalQuantity::counts);
+  EXPECT_EQ(h.sha256.size(), 64u);
+  const auto first = recording.frame(0);
+  EXPECT_EQ(first.values[0], 6142);
+  EXPECT_EQ(first.values[32 * 69 + 34], 6265);
+  EXPECT_EQ(first.values[10 * 69 + 20], 6196);
+  EXPECT_NEAR(mean(first.values), 6269.10009, 5e-6);
+  const auto last = recording.frame(99);
+  EXPECT_EQ(last.values.back(), 6345);
+  EXPECT_DOUBLE_EQ(last.time, 0.99);
+  float low = 1e9F, high = 0;
+  Frame frame;
+  for (std::size_t i = 0; i < h.frames; ++i) {
+    recording.read(i, frame);
+    low = std::min(low, lowest(frame.values));
+    high = std::max(high, highest(frame.values));
+  }
+  EXPECT_EQ(low, 6106);
+  EXPECT_EQ(high, 6462);
+}
+
+TEST(Ptw, SaysThatTheFramesClockContradictsTheHeader) {
+  // The stamps of this sample go from 27.78 s to 30.75 s over 99 frames: 30 ms, not 10 ms.
+  NEED_SAMPLE(ptw);
+  const auto notes = open_recording(samples / ptw).header().notes;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("0.0300 s a frame"), std::string::npos) << notes[0];
+}
+
+TEST(Ptw, KeepsTheWholeFramesOfATruncatedFileAndCountsTheLost) {
+  NEED_SAMPLE(ptw);
+  const Temporary folder;
+  const std::string whole = read_file(samples / ptw);
+  constexpr std::size_t stride = 1016 + 2 * 69 * 64;
+  const auto cut = open_recording(folder.file("cut.ptw", whole.substr(0, 3476 + 41 * stride + 77)));
+  EXPECT_EQ(cut.header().frames, 41u);
+  EXPECT_EQ(cut.header().frames_lost, 59u);
+  EXPECT_EQ(cut.frame(40).values, open_recording(samples / ptw).frame(40).values);
+  EXPECT_THROW(cut.frame(41), InputError);
+  const auto short_by_a_byte =
+      open_recording(folder.file("byte.ptw", whole.substr(0, whole.size() - 1)));
+  EXPECT_EQ(short_by_a_byte.header().frames, 99u);
+  EXPECT_EQ(short_by_a_byte.header().frames_lost, 1u);
+  EXPECT_THROW(open_recording(folder.file("none.ptw", whole.substr(0, 3476 + stride - 1))),
+               InputError);
+  EXPECT_THROW(open_recording(folder.file("header.ptw", whole.substr(0, 300))), InputError);
+}
+
+TEST(Flir, ReadsTheThermimageSampleWithTemperatures) {
+  NEED_SAMPLE(seq);
+  const auto recording = open_recording(samples / seq);
+  const auto& h = recording.header();
+  EXPECT_EQ(h.width, 640u);
+  EXPECT_EQ(h.height, 480u);
+  EXPECT_EQ(h.frames, 2u);  // the magic also occurs at 449999, inside pixels
+  EXPECT_EQ(h.frames_lost, 0u);
+  EXPECT_EQ(h.quantity, SignalQuantity::temperature);
+  EXPECT_DOUBLE_EQ(h.frame_rate, 30);
+  EXPECT_EQ(h.calibration.at("planck_r1"), 21106.76953125);
+  EXPECT_EQ(h.calibration.at("planck_b_K"), 1501);
+  EXPECT_EQ(h.calibration.at("planck_o"), -7340);
+  EXPECT_EQ(h.calibration.at("planck_r2"), 0.012545257806777954);
+  EXPECT_EQ(h.calibration.at("relative_humidity"), 0.5);
+  const auto f = recording.frame(0);
+  EXPECT_EQ(f.counts[0], 17870);
+  EXPECT_EQ(f.counts[240 * 640 + 320], 17853);
+  EXPECT_EQ(f.counts[10 * 640 + 20], 17834);
+  EXPECT_EQ(lowest(f.counts), 17220);
+  EXPECT_EQ(highest(f.counts), 20817);
+  EXPECT_NEAR(mean(f.counts), 17870.47767, 5e-6);
+  // A float of 295 K has steps of 3e-5 K.
+  EXPECT_NEAR(f.values[0] - 273.15, 22.46279, 2e-5);
+  EXPECT_NEAR(f.values[240 * 640 + 320] - 273.15, 22.36381, 2e-5);
+  EXPECT_NEAR(lowest(f.values) - 273.15, 18.60133, 2e-5);
+  EXPECT_NEAR(highest(f.values) - 273.15, 38.27134, 2e-5);
+  EXPECT_NEAR(recording.frame(1).time, 3.967, 1e-6);  // 1339617132.666 - 1339617128.699
+}
+
+TEST(Flir, KeepsTheWholeFramesOfATruncatedFile) {
+  NEED_SAMPLE(seq);
+  const Temporary folder;
+  const std::string whole = read_file(samples / seq);
+  for (const std::size_t size :
+       {whole.size() - 1, std::size_t{617180 + 100}, std::size_t{617180 + 2}}) {
+    const auto cut = open_recording(folder.file("cut.seq", whole.substr(0, size)));
+    EXPECT_EQ(cut.header().frames, 1u) << size;
+    EXPECT_EQ(cut.header().frames_lost, 1u) << size;
+  }
+  EXPECT_THROW(open_recording(folder.file("none.seq", whole.substr(0, 617179))), InputError);
+}
+
+TEST(Flir, ReadsBothByteOrders) {
+  // A synthetic block of 2 x 1 pixels, written once in each order, with the sample's own constants.
+  const auto block = [](bool big) {
+    std::string b(64 + 2 * 32 + 36 + 0x466, '\0');
+    const auto put = [&](std::size_t at, auto value) {
+      char raw[sizeof value];
+      std::memcpy(raw, &value, sizeof value);
+      if (big) std::reverse(raw, raw + sizeof value);
+      std::copy(raw, raw + sizeof value, b.begin() + static_cast<std::ptrdiff_t>(at));
+    };
+    using u16 = std::uint16_t;
+    using u32 = std::uint32_t;
+    b.replace(0, 3, "FFF");
+    put(0x14, u32{100});
+    put(0x18, u32{64});
+    put(0x1C, u32{2});
+    const u32 raw = 128, camera = 164;
+    put(64, u16{1});
+    put(66, big ? u16{1} : u16{2});
+    put(64 + 0x0C, raw);
+    put(64 + 0x10, u32{36});
+    put(96, u16{0x20});
+    put(96 + 0x0C, camera);
+    put(96 + 0x10, u32{0x466});
+    put(raw, u16{2});
+    put(raw + 2, u16{2});
+    put(raw + 4, u16{1});
+    put(raw + 0x20, u16{17870});
+    put(raw + 0x22, u16{17853});
+    put(camera, u16{2});
+    const std::pair<std::size_t, float> floats[] = {
+        {0x20, .95F},      {0x24, 1.F},      {0x28, 293.15F},  {0x2C, 293.15F},
+        {0x30, 293.15F},   {0x34, 1.F},      {0x3C, .5F},      {0x58, 21106.76953125F},
+        {0x5C, 1501.F},    {0x60, 1.F},      {0x70, .006569F}, {0x74, .01262F},
+        {0x78, -.002276F}, {0x7C, -.00667F}, {0x80, 1.9F},     {0x30C, 0.012545257806777954F}};
+    for (const auto& [at, value] : floats) put(camera + at, value);
+    put(camera + 0x308, std::int32_t{-7340});
+    put(camera + 0x464, u16{30});
+    return b;
+  };
+  const Temporary folder;
+  for (const bool big : {false, true}) {
+    const auto recording = open_recording(folder.file("order.fff", block(big) + block(big)));
+    EXPECT_EQ(recording.header().frames, 2u);
+    const auto f = recording.frame(1);
+    EXPECT_EQ(f.counts, (std::vector<float>{17870, 17853}));
+    EXPECT_NEAR(f.values[0] - 273.15, 22.46279, 2e-5) << big;
+    EXPECT_NEAR(f.values[1] - 273.15, 22.36381, 2e-5) << big;
+  }
+}
+
+TEST(FlirTemperature, InvertsTheCountsOfABlackBodyInDryAirAtNoDistance) {
+  FlirConstants c{.planck_r1 = 21106.77,
+                  .planck_b = 1501,
+                  .planck_f = 1,
+                  .planck_o = -7340,
+                  .planck_r2 = 0.012545};
+  const FlirTemperature temperature(c);
+  for (const double t : {250.0, 295.0, 400.0}) EXPECT_NEAR(temperature(flir_counts(c, t)), t, 1e-9);
+}
+
+TEST(Tiff, ReadsTheFlirpySampleAndItsLinearTemperature) {
+  NEED_SAMPLE(tiff);
+  const auto recording = open_recording(samples / tiff);
+  const auto& h = recording.header();
+  EXPECT_EQ(h.width, 640u);
+  EXPECT_EQ(h.height, 512u);
+  EXPECT_EQ(h.frames, 1u);
+  const auto f = recording.frame(0);
+  EXPECT_EQ(f.values[0], 6791);
+  EXPECT_EQ(f.values[256 * 640 + 320], 7021);
+  EXPECT_EQ(lowest(f.values), 6743);
+  EXPECT_EQ(highest(f.values), 7077);
+  EXPECT_NEAR(mean(f.values), 6983.25207, 5e-6);
+  const auto warm = with_linear_temperature(recording, 0.04, 0).frame(0);
+  EXPECT_NEAR(mean(warm.values) - 273.15, 6.180, 5e-4);
+  EXPECT_EQ(warm.counts, f.values);
+}
+
+TEST(Picture, ReadsTheMeltPoolFrameOfNistTopDown) {
+  NEED_SAMPLE(bmp);
+  const auto recording = open_recording(samples / bmp);
+  EXPECT_EQ(recording.header().width, 120u);
+  EXPECT_EQ(recording.header().height, 128u);
+  EXPECT_EQ(recording.header().frames, 1u);
+  EXPECT_EQ(recording.header().frame_rate, 0);
+  const auto f = recording.frame(0);
+  EXPECT_EQ(highest(f.values), 255);
+  EXPECT_NEAR(mean(f.values), 7.12962, 5e-6);
+  const auto above = [&](float level) {
+    return std::count_if(f.values.begin(), f.values.end(), [&](float v) { return v >= level; });
+  };
+  EXPECT_EQ(above(40), 214);
+  EXPECT_EQ(above(80), 139);
+  EXPECT_EQ(above(128), 100);
+  EXPECT_EQ(above(200), 66);
+  double x = 0, y = 0;
+  for (std::size_t i = 0; i < f.values.size(); ++i)
+    if (f.values[i] >= 128) {
+      x += static_cast<double>(i % 120) / 100;
+      y += static_cast<double>(i / 120) / 100;
+    }
+  EXPECT_NEAR(x, 51.91, 1e-9);
+  EXPECT_NEAR(y, 66.97, 1e-9);
+  EXPECT_EQ(f.status[63 * 120 + 50], PixelStatus::saturated);
+}
+
+TEST(Picture, RefusesATruncatedPictureInsteadOfReadingZeros) {
+  NEED_SAMPLE(bmp);
+  const Temporary folder;
+  const std::string whole = read_file(samples / bmp);
+  EXPECT_NE(refusal(folder.file("cut.bmp", whole.substr(0, 9000))).find("ends before its last row"),
+            std::string::npos);
+}
+
+TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
+  const Temporary folder;
+  const std::string text = refusal(folder.file("notes.ptw", "The quick brown fox\nand more\n"));
+  EXPECT_NE(text.find("its content is text (it begins with \"The quick brown fox\")"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("CED"), std::string::npos) << text;
+  EXPECT_NE(refusal(folder.file("cedar.ptw", "CEDAR is a tree, and this is long enough a text."))
+                .find("text"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder.file("a.ats", std::string(100, '\1'))).find("closed"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder.file("empty.seq", "")).find("empty"), std::string::npos);
+  EXPECT_NE(refusal(folder.file("a.xyz", std::string(100, '\1'))).find(".seq"), std::string::npos);
+  EXPECT_NE(refusal("no/such/file.ptw").find("no such file"), std::string::npos);
+}
+
+TEST(OpenRecording, GoesByContentNotByName) {
+  NEED_SAMPLE(bmp);
+  const Temporary folder;
+  EXPECT_EQ(open_recording(folder.file("wrong.ptw", read_file(samples / bmp))).header().format,
+            "picture");
+}
+
+}  // namespace
+}  // namespace meltproof::imaging
