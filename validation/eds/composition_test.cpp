@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validation/eds/composition.hpp"
+
+#include <regex>
+
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+
+namespace meltproof::validation {
+namespace {
+
+TEST(Composition, HalfIronHalfAluminiumByMass) {
+  const auto atoms = atom_from_mass({{"Fe", 0.5}, {"Al", 0.5}});
+  EXPECT_NEAR(100 * atoms.at("Fe"), 32.58, 0.005);
+  EXPECT_NEAR(100 * atoms.at("Al"), 67.42, 0.005);
+  const auto mass = mass_from_atom(atoms);
+  EXPECT_NEAR(mass.at("Fe"), 0.5, 1e-12);
+}
+
+// CuFeS2 as quantified by a vendor's program (samples/README.md): mass fractions that add to 0.950.
+TEST(Composition, AgreesWithAVendorsQuantification) {
+  const auto atoms = atom_from_mass({{"S", 0.2637949}, {"Fe", 0.3066824}, {"Cu", 0.3799997}});
+  EXPECT_NEAR(atoms.at("S"), 0.4176372, 5e-5);
+  EXPECT_NEAR(atoms.at("Fe"), 0.2787832, 5e-5);
+  EXPECT_NEAR(atoms.at("Cu"), 0.3035796, 5e-5);
+}
+
+TEST(Composition, AgreesWithTheVendorsFileItself) {
+  const std::string path = "../shared/samples/bruker_nano.spx";
+  if (!std::filesystem::exists(path)) {
+    GTEST_SKIP() << "the vendors' sample files are not beside this checkout";
+  }
+  const std::string text = read_file(path);
+  const std::regex result(
+      "<Atom>(\\d+)</Atom>\\s*<XLine>[^<]*</XLine>\\s*<AtomPercent>([^<]*)</AtomPercent>\\s*"
+      "<MassPercent>([^<]*)</MassPercent>");
+  const std::map<int, std::string> symbols = {{16, "S"}, {26, "Fe"}, {29, "Cu"}};
+  ElementFractions mass, atoms;
+  for (std::sregex_iterator at(text.begin(), text.end(), result), end; at != end; ++at) {
+    const auto& symbol = symbols.at(std::stoi((*at)[1]));
+    atoms[symbol] = std::stod((*at)[2]);
+    mass[symbol] = std::stod((*at)[3]);
+  }
+  ASSERT_EQ(mass.size(), 3u);
+  for (const auto& [symbol, value] : atom_from_mass(mass)) {
+    EXPECT_NEAR(value, atoms.at(symbol), 5e-5) << symbol;
+  }
+}
+
+TEST(Composition, ConcentrationFromBothElementsOfTheAlloy) {
+  double sum = 0;
+  for (const auto& [symbol, value] : alsi10mg_composition()) {
+    sum += value;
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+  // A quarter of AlSi10Mg in a steel with 0.5 % Si (a made-up steel).
+  EXPECT_NEAR(concentration_from_aluminium(0.25 * 0.8965), 0.25, 1e-12);
+  EXPECT_NEAR(concentration_from_silicon(0.25 * 0.10 + 0.75 * 0.005, 0.005), 0.25, 1e-12);
+  EXPECT_LT(concentration_from_aluminium(-0.001), 0);
+}
+
+TEST(Composition, RefusesWhatItDoesNotKnow) {
+  EXPECT_THROW(atom_from_mass({{"Xx", 1}}), InputError);
+  EXPECT_THROW(atom_from_mass({}), InputError);
+  EXPECT_THROW(concentration_from_silicon(0.01, 0.2), InputError);
+}
+
+}  // namespace
+}  // namespace meltproof::validation
