@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -207,6 +208,24 @@ void regress(EdgeFit& fit) {
       if (sizes[i] <= limit) kept.push_back(fit.lines[i]);
     if (kept.size() > fit.lines.size() / 2) fit.lines = std::move(kept);
   }
+  // Noise differs from band to band, a misplaced line does not: its mean over the bands tells.
+  std::map<int, std::pair<double, int>> deviations;
+  for (const auto& line : fit.lines) {
+    auto& [sum, count] = deviations[line.index];
+    sum += line.column - solution(0) - solution(1) * line.index - solution(2) * line.row;
+    ++count;
+  }
+  double excess = 0, mean_index = 0, spread = 0;
+  const auto number = static_cast<double>(deviations.size());
+  for (const auto& [index, deviation] : deviations) {
+    const double mean = deviation.first / deviation.second;
+    excess += (mean * mean - fit.residual * fit.residual / deviation.second) / number;
+    mean_index += index / number;
+  }
+  for (const auto& [index, deviation] : deviations) spread += std::pow(index - mean_index, 2);
+  fit.inequality = std::sqrt(std::max(excess, 0.0));
+  fit.inequality_uncertainty = fit.inequality / std::sqrt(spread) / std::abs(solution(1));
+
   // fx = 1/b, fy = -c/b
   const double b = solution(1), c = solution(2);
   fit.frequency.value = {1 / b, -c / b};

@@ -19,8 +19,13 @@ struct EdgeFit {
   Frequency frequency;
   std::vector<LinePosition> lines;  ///< in image columns and rows
   double residual = 0;              ///< px, standard deviation of a line's position
-  double line_width = 0;            ///< periods, mean distance of the two edges
-  double blur = 0;                  ///< px, mean sigma of the edges
+  /// px, by which the lines' mean positions scatter around equal distances beyond what noise
+  /// explains.
+  double inequality = 0;
+  /// Relative standard uncertainty of the period that follows from it.
+  double inequality_uncertainty = 0;
+  double line_width = 0;  ///< periods, mean distance of the two edges
+  double blur = 0;        ///< px, mean sigma of the edges
 };
 
 /// Fits, in every band of rows, a quadratic background + height sum over lines j of

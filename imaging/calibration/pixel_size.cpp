@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "imaging/recording/formats.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -16,6 +17,8 @@ namespace {
 /// What the two models leave of a noise-free image of ideal lines, relative: the bound that the
 /// tests hold them to.
 constexpr double model_uncertainty = 2e-5;
+/// Certified scales are a hundred times better; more than this is no scale, or not only a scale.
+constexpr double most_inequality = 0.03;
 constexpr double degree = std::numbers::pi / 180;
 
 /// Relative uncertainty of a length anywhere in an image whose period changes by `drift` across it;
@@ -67,6 +70,41 @@ ScaleImage measure_scale(const cv::Mat& image, const std::string& name) {
         "standard uncertainties apart; expected at most 3. The lines are not equal and parallel in "
         "this image (dust, distortion, reflections or motion); take another image or crop it.",
         name, first, second, out.disagreement));
+  const double inequality = out.edges.inequality / second;
+  if (!(inequality <= most_inequality))
+    throw InputError(
+        fmt::format("{}: the lines lie {:.1f} % of a period (rms) off equal distances; expected at "
+                    "most {:.0f} %. Dust, "
+                    "motion or distortion; take another image or crop it.",
+                    name, 100 * inequality, 100 * most_inequality));
+  return out;
+}
+
+ScaleImage measure_scale(const std::filesystem::path& path) {
+  const Recording recording = open_recording(path);
+  const auto& header = recording.header();
+  const cv::Size extent(static_cast<int>(header.width), static_cast<int>(header.height));
+  cv::Mat mean(extent, CV_64F, cv::Scalar(0)), count = mean.clone();
+  auto* const sum_of = mean.ptr<double>();
+  auto* const count_of = count.ptr<double>();
+  Frame frame;
+  for (std::size_t index = 0; index < header.frames; ++index) {
+    recording.read(index, frame);
+    for (std::size_t i = 0; i < frame.values.size(); ++i)
+      if (frame.status[i] == PixelStatus::good)
+        sum_of[i] += double{frame.values[i]}, count_of[i] += 1;
+  }
+  // 0/0 becomes NaN: a pixel that was never good is known to be missing.
+  for (std::size_t i = 0; i < mean.total(); ++i) sum_of[i] /= count_of[i];
+  ScaleImage out;
+  try {
+    out = measure_scale(mean, path.string());
+  } catch (const NoStripes& error) {
+    throw NoStripes(path.string() + ": " + error.what());
+  }
+  out.sha256 = header.sha256;
+  out.synthetic = header.synthetic;
+  out.frames = static_cast<int>(header.frames);
   return out;
 }
 
@@ -128,19 +166,20 @@ PixelSize pixel_size(const std::vector<ScaleImage>& images, const Graduation& gr
     fit_y = 0.5 * std::sqrt(covariance(1, 1)) / v(1);
     size.x_measured = size.y_measured = true;
   }
-  double drift_x = 0, drift_y = 0;
-  for (const auto& image : images) {
-    const double drift = drift_uncertainty(image.stripes);
-    if (images.size() == 1)
-      drift_x = drift_y = drift;
-    else
-      (image.across_x() ? drift_x : drift_y) = drift;
-  }
+  const auto per_axis = [&](const std::string& source, const auto& relative) {
+    BudgetEntry entry{source, relative(images.front()), relative(images.front())};
+    if (images.size() == 2) (images[1].across_x() ? entry.x : entry.y) = relative(images[1]);
+    return entry;
+  };
   const double certificate = graduation.uncertainty / graduation.length;
-  size.budget = {{"fit of the stripes (noise)", fit_x, fit_y},
-                 {"model of the stripes", model_uncertainty, model_uncertainty},
-                 {"drift of the period over the image (tilt)", drift_x, drift_y},
-                 {"certificate of the scale", certificate, certificate}};
+  size.budget = {
+      {"fit of the stripes (noise)", fit_x, fit_y},
+      {"model of the stripes", model_uncertainty, model_uncertainty},
+      per_axis("drift of the period over the image (tilt)",
+               [](const ScaleImage& image) { return drift_uncertainty(image.stripes); }),
+      per_axis("unequal distances of the lines",
+               [](const ScaleImage& image) { return image.edges.inequality_uncertainty; }),
+      {"certificate of the scale", certificate, certificate}};
   size.u_x = size.x * total(size.budget, &BudgetEntry::x);
   size.u_y = size.y * total(size.budget, &BudgetEntry::y);
   return size;
@@ -208,7 +247,8 @@ nlohmann::json calibration_json(const PixelSize& size, const std::vector<ScaleIm
          {"line_width_periods", edges.line_width},
          {"edge_blur_px", edges.blur},
          {"edge_residual_px", edges.residual},
-         {"lines_fitted", edges.lines.size()}});
+         {"inequality_px", edges.inequality},
+         {"line_positions", edges.lines.size()}});
   }
   out["synthetic"] = synthetic;
   return out;

@@ -2,6 +2,7 @@
 // The size of a pixel on the object, from one or two images of a scale with equal, parallel lines.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -40,10 +41,15 @@ struct ScaleImage {
 /// Relative standard uncertainty of the length of a frequency.
 double relative_uncertainty(const Frequency& f);
 
-/// Measures the stripes of an image by both estimators.
+/// Measures the stripes of an image (CV_64F, NaN where a pixel is missing) by both estimators.
 /// @throws NoStripes if there are none; InputError if the estimators disagree by more than three
 ///         standard uncertainties, naming `name`.
 ScaleImage measure_scale(const cv::Mat& image, const std::string& name);
+
+/// The same from a file of any format that imaging/recording reads. All its frames are averaged; a
+/// pixel counts in the frames in which it is good. @throws InputError as the reader and
+/// measure_scale() do, NoStripes with the file's name in front.
+ScaleImage measure_scale(const std::filesystem::path& path);
 
 /// One entry of the uncertainty budget, relative standard uncertainties.
 struct BudgetEntry {

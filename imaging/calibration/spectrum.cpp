@@ -22,25 +22,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-cv::Mat average(const std::vector<cv::Mat>& images) {
-  cv::Mat sum(images.at(0).size(), CV_64F, cv::Scalar(0)), count = sum.clone();
-  for (const auto& image : images) {
-    cv::Mat values;
-    image.convertTo(values, CV_64F);
-    for (int row = 0; row < values.rows; ++row)
-      for (int column = 0; column < values.cols; ++column)
-        if (std::isfinite(values.at<double>(row, column))) {
-          sum.at<double>(row, column) += values.at<double>(row, column);
-          count.at<double>(row, column) += 1;
-        }
-  }
-  // Not by cv::divide, which turns 0/0 into 0 instead of into a value that is known to be missing.
-  for (int row = 0; row < sum.rows; ++row)
-    for (int column = 0; column < sum.cols; ++column)
-      sum.at<double>(row, column) /= count.at<double>(row, column);
-  return sum;
-}
-
 cv::Mat flatten(const cv::Mat& image) {
   std::vector<cv::Point> pixels;
   for (int row = 0; row < image.rows; ++row)
@@ -58,6 +39,7 @@ cv::Mat flatten(const cv::Mat& image) {
   }
   const Eigen::VectorXd rest = data - a * a.householderQr().solve(data);
   cv::Mat out(image.size(), CV_64F, cv::Scalar(0));
+  if (rest.norm() <= 1e-9 * data.norm()) return out;  // round-off is no pattern
   for (std::size_t i = 0; i < pixels.size(); ++i)
     out.at<double>(pixels[i]) = rest(static_cast<Eigen::Index>(i));
   return out;

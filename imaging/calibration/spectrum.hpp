@@ -34,10 +34,6 @@ struct Position {
 /// The middle value (the upper one of two). `values` must not be empty.
 double median(std::vector<double> values);
 
-/// The mean of several equal-sized images (CV_32F or CV_64F) as CV_64F; pixels that are not finite
-/// in one image are taken from the others.
-cv::Mat average(const std::vector<cv::Mat>& images);
-
 /// The image less its least-squares background of second order (x, y, squares and product).
 cv::Mat flatten(const cv::Mat& image);
 
