@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+bool is_forward(ScanDirection direction) {
+  return direction == ScanDirection::right || direction == ScanDirection::down;
+}
+
+template <class Valid>
+Range range_of(const std::vector<float>& values, Valid valid) {
+  Range r{1e300, -1e300, 0};
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!valid(i)) continue;
+    const auto v = static_cast<double>(values[i]);
+    r.low = std::min(r.low, v);
+    r.high = std::max(r.high, v);
+    r.mean += v;
+    ++n;
+  }
+  if (n == 0) return {NAN, NAN, NAN};
+  r.mean /= static_cast<double>(n);
+  return r;
+}
+
+FrameResult describe(const Frame& frame) {
+  FrameResult result;
+  result.index = frame.index;
+  result.time = frame.time;
+  result.values =
+      range_of(frame.values, [&](std::size_t i) { return frame.status[i] != PixelStatus::dead; });
+  if (!frame.counts.empty())
+    result.counts = range_of(frame.counts, [](std::size_t) { return true; });
+  for (const auto status : frame.status) {
+    result.saturated += status == PixelStatus::saturated ? 1 : 0;
+    result.under_range += status == PixelStatus::under_range ? 1 : 0;
+    result.dead += status == PixelStatus::dead ? 1 : 0;
+  }
+  return result;
+}
+
+/// The dimensions of a region in the scan's own terms.
+void measure(FrameResult& result, Region region, ScanDirection direction, const PixelSize& pixel) {
+  const double px = pixel.known() ? pixel.x : 1, py = pixel.known() ? pixel.y : 1;
+  const bool along_x = direction == ScanDirection::right || direction == ScanDirection::left;
+  // Positions are counted from the image's border, which lies half a pixel before the first centre.
+  const Extent x{(region.x.low + 0.5) * px, (region.x.high + 0.5) * px};
+  const Extent y{(region.y.low + 0.5) * py, (region.y.high + 0.5) * py};
+  const Extent& along = along_x ? x : y;
+  const bool forward = is_forward(direction);
+  result.found = true;
+  result.complete = !region.at_border();
+  result.onset = forward ? along.high : along.low;
+  result.end = forward ? along.low : along.high;
+  result.length = along.size();
+  result.depth = (along_x ? y : x).size();
+  result.area = region.area * px * py;
+  result.orientation =
+      0.5 * std::atan2(2 * region.xy * px * py, region.xx * px * px - region.yy * py * py);
+  region.edge.clear();  // a long recording would hold too many
+  result.region = std::move(region);
+}
+
+void summarise_frames(Analysis& analysis, ScanDirection direction) {
+  const auto complete = std::count_if(analysis.frames.begin(), analysis.frames.end(),
+                                      [](const FrameResult& f) { return f.complete; });
+  analysis.only_incomplete = complete == 0;
+  std::vector<double> length, depth, area, time, onset;
+  for (const auto& f : analysis.frames) {
+    if (!(analysis.only_incomplete ? f.found : f.complete)) continue;
+    length.push_back(f.length);
+    depth.push_back(f.depth);
+    area.push_back(f.area);
+    time.push_back(f.time);
+    onset.push_back(f.onset);
+  }
+  analysis.length = summarise(length);
+  analysis.depth = summarise(depth);
+  analysis.area = summarise(area);
+  if (time.size() >= 3 && time.back() > time.front())
+    analysis.speed = (is_forward(direction) ? 1 : -1) * slope(time, onset);
+
+  // The frame that is shown is the one most like the mean; without a pool, the brightest.
+  const auto merit = [&](const FrameResult& f) {
+    if (!analysis.found) return f.values.high;
+    const bool counted = analysis.only_incomplete ? f.found : f.complete;
+    return counted ? -std::abs(f.length - analysis.length.mean) : -1e300;
+  };
+  const auto best =
+      std::max_element(analysis.frames.begin(), analysis.frames.end(),
+                       [&](const auto& a, const auto& b) { return merit(a) < merit(b); });
+  analysis.shown = best->index;
+}
+
+}  // namespace
+
+ScanDirection parse_scan_direction(const std::string& text) {
+  if (text == "+x") return ScanDirection::right;
+  if (text == "-x") return ScanDirection::left;
+  if (text == "+y") return ScanDirection::down;
+  if (text == "-y") return ScanDirection::up;
+  throw InputError(fmt::format(
+      "The scan direction is \"{}\"; expected +x, -x, +y or -y, with y downwards.", text));
+}
+
+std::optional<Region> pool_in(const Recording& recording, const Level& level, const Frame& frame) {
+  if (!level.value) return std::nullopt;
+  RegionFinder finder(recording.header().width, recording.header().height, level.interpolation);
+  auto region = finder.largest(frame.values, *level.value);
+  if (!region || region->pixels < smallest_pool) return std::nullopt;
+  return region;
+}
+
+Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDirection direction,
+                 const PixelSize& pixel) {
+  const auto& header = recording.header();
+  Analysis analysis;
+  analysis.level = find_level(recording, request);
+  analysis.unit = pixel.known() ? std::string("m") : std::string("px");
+  analysis.along_x = direction == ScanDirection::right || direction == ScanDirection::left;
+  RegionFinder finder(header.width, header.height, analysis.level.interpolation);
+  Frame frame;
+  std::size_t brightest = 0, largest = 0;
+  Progress progress("extract", static_cast<double>(header.frames));
+  analysis.frames.reserve(header.frames);
+  for (std::size_t i = 0; i < header.frames; ++i) {
+    recording.read(i, frame);
+    auto result = describe(frame);
+    if (analysis.level.value && result.values.high >= *analysis.level.value) {
+      auto region = finder.largest(frame.values, *analysis.level.value);
+      if (region) largest = std::max(largest, region->pixels);
+      if (region && region->pixels >= smallest_pool)
+        measure(result, std::move(*region), direction, pixel);
+    }
+    analysis.found = analysis.found || result.found;
+    analysis.frames.push_back(std::move(result));
+    if (analysis.frames.back().values.high > analysis.frames[brightest].values.high) brightest = i;
+    progress.update(static_cast<double>(i + 1));
+  }
+  if (!analysis.found) {
+    const auto& top = analysis.frames[brightest];
+    if (!analysis.level.value)
+      analysis.reason = analysis.level.reason;
+    else if (largest > 0)
+      analysis.reason = fmt::format(
+          "The largest region at or above the level of {:.6g} {} has {} pixel{}, where a melt pool "
+          "needs at least {}.",
+          *analysis.level.value, header.unit, largest, largest == 1 ? "" : "s", smallest_pool);
+    else
+      analysis.reason = below_level_reason(header, analysis.level, top.values.high, top.index);
+  }
+  summarise_frames(analysis, direction);
+  return analysis;
+}
+
+}  // namespace meltproof::imaging

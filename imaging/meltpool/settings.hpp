@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a user can say about a recording, declared once for the settings file and the command line.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/input.hpp"
+#include "imaging/meltpool/analysis.hpp"
+
+namespace meltproof::imaging {
+
+struct Settings {
+  std::optional<double> level, reference_temperature, emissivity, transmission;
+  std::optional<double> frame_rate;        ///< Hz, for files that do not hold one
+  std::optional<double> kelvin_per_count;  ///< K, for files whose counts are a linear temperature
+  double zero_count_temperature = 0;       ///< K at count 0 of that scale
+  std::optional<double> scan_speed;        ///< m/s, to check the measured one
+  std::string scan_direction = "+x";
+  std::filesystem::path calibration;
+  LevelRequest request() const { return {level, reference_temperature, emissivity, transmission}; }
+};
+
+/// The declaration of the settings, bound to `settings`.
+Input declare(Settings& settings);
+
+/// The pixel size that `meltproof-calibrate` has written: pixel_size_x_um, pixel_size_y_um and,
+/// where they are given, u_pixel_size_x_um, u_pixel_size_y_um.
+/// @throws InputError if the file is no JSON or a size is missing or not positive.
+PixelSize read_pixel_size(const std::filesystem::path& calibration);
+
+/// What the settings make of a recording: a temperature scale, a frame rate.
+/// @throws InputError if they contradict what the file holds.
+Recording apply(const Settings& settings, Recording recording);
+
+}  // namespace meltproof::imaging

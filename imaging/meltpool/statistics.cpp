@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <vector>
+
+namespace meltproof::imaging {
+namespace {
+
+/// S / sqrt(var S), both of Mann (1945) and Kendall (1975). Of long series evenly spaced values are
+/// taken: the cost grows with the square of the number.
+double mann_kendall(std::span<const double> all) {
+  constexpr std::size_t most = 2000;
+  const std::size_t step = (all.size() + most - 1) / most;
+  std::vector<double> v;
+  for (std::size_t i = 0; i < all.size(); i += step) v.push_back(all[i]);
+  const auto n = static_cast<double>(v.size());
+  if (v.size() < 4) return 0;
+  double s = 0;
+  std::map<double, double> ties;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    ties[v[i]] += 1;
+    for (std::size_t j = i + 1; j < v.size(); ++j) s += v[j] > v[i] ? 1 : v[j] < v[i] ? -1 : 0;
+  }
+  double variance = n * (n - 1) * (2 * n + 5);
+  for (const auto& [value, t] : ties) variance -= t * (t - 1) * (2 * t + 5);
+  if (!(variance > 0) || s == 0) return 0;
+  return (s > 0 ? s - 1 : s + 1) / std::sqrt(variance / 18);
+}
+
+}  // namespace
+
+double Series::uncertainty_of_mean() const {
+  return effective > 0 ? deviation / std::sqrt(effective) : 0;
+}
+
+Series summarise(std::span<const double> v) {
+  Series s;
+  s.n = v.size();
+  if (v.empty()) return s;
+  const auto n = static_cast<double>(v.size());
+  for (const double x : v) s.mean += x / n;
+  s.effective = n;
+  if (v.size() < 2) return s;
+  double sum = 0;
+  for (const double x : v) sum += (x - s.mean) * (x - s.mean);
+  s.deviation = std::sqrt(sum / (n - 1));
+  s.trend = mann_kendall(v);
+  double rho_sum = 0;
+  for (std::size_t lag = 1; sum > 0 && lag < v.size() / 2; ++lag) {
+    double c = 0;
+    for (std::size_t i = 0; i + lag < v.size(); ++i) c += (v[i] - s.mean) * (v[i + lag] - s.mean);
+    if (c <= 0) break;
+    rho_sum += c / sum;
+  }
+  s.effective = std::max(1.0, n / (1 + 2 * rho_sum));
+  return s;
+}
+
+double slope(std::span<const double> x, std::span<const double> y) {
+  const auto n = static_cast<double>(x.size());
+  double mx = 0, my = 0, xy = 0, xx = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mx += x[i] / n;
+    my += y[i] / n;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xy += (x[i] - mx) * (y[i] - my);
+    xx += (x[i] - mx) * (x[i] - mx);
+  }
+  return xx > 0 ? xy / xx : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace meltproof::imaging
