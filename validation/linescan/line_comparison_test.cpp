@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validation/linescan/line_comparison.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "validation/linescan/synthetic_track.hpp"
+
+namespace meltproof::validation {
+namespace {
+
+namespace fs = std::filesystem;
+
+double smooth(const Point& p) { return 0.5 * std::erfc((p[1] + 4e-6) / 6e-6); }
+bool one_grain(const Point& p) {
+  return std::hypot(p[0] - 20e-6, p[1] - 20e-6, p[2] + 6e-6) < 4e-6;
+}
+
+fs::path synthetic_run(const std::function<bool(const Point&)>& additive) {
+  const fs::path path = fs::path(testing::TempDir()) / "synthetic_run.h5";
+  write_synthetic_run(synthetic_track(smooth, additive), path);
+  return path;
+}
+
+TEST(LineComparison, IsPendingWithoutAMeasurement) {
+  LineRequest request;
+  request.run = synthetic_run(one_grain);
+  request.grain = Direction::lateral;
+  const auto result = compare_line(request);
+  EXPECT_EQ(result["status"], "pending");
+  EXPECT_TRUE(result["measured"].is_null());
+  EXPECT_TRUE(result["metrics"].is_null());
+  EXPECT_EQ(result["line"]["direction"], "lateral");
+  EXPECT_EQ(result["simulated"]["position_um"].size(), 81u);
+  EXPECT_EQ(result["simulated"]["concentration"].size(), 81u);
+  EXPECT_EQ(result["simulated"]["concentration_seen"].size(), 81u);
+  EXPECT_NEAR(result["interaction"]["range_um"].get<double>(), 2.45, 0.005);
+  EXPECT_NEAR(result["grain"]["edge_distance_um"].get<double>(), 9, 1e-6);
+}
+
+TEST(LineComparison, RecoversItsOwnProfileFromACsvWithAnotherOrigin) {
+  LineRequest request;
+  request.run = synthetic_run(one_grain);
+  request.start = {20e-6, -25e-6, -20e-6};
+  request.end = {20e-6, 25e-6, -20e-6};
+  const auto simulated = compare_line(request)["simulated"];
+  const fs::path csv = fs::path(testing::TempDir()) / "synthetic_scan.csv";
+  {
+    std::ofstream out(csv);
+    out << "synthetic: the simulated profile itself, 1.5 um further along\nDistance (um),Al Wt%,Al "
+           "Wt% Sigma,Fe Wt%\n";
+    for (std::size_t i = 20; i < 180; i += 8) {
+      const double al = 89.65 * simulated["concentration_seen"][i].get<double>();
+      out << simulated["position_um"][i].get<double>() - 1.5 << "," << al << ",0.5," << 100 - al
+          << "\n";
+    }
+  }
+  request.measured = csv;
+  request.bounds.shift = 3e-6;
+  const auto result = compare_line(request);
+  EXPECT_EQ(result["status"], "compared");
+  EXPECT_NEAR(result["registration"]["shift_um"].get<double>(), 1.5, 1e-3);
+  EXPECT_EQ(result["registration"]["fitted_parameters"], 1);
+  EXPECT_LT(result["metrics"]["RMSE"].get<double>(), 1e-4);
+  EXPECT_GT(result["metrics_before"]["RMSE"].get<double>(), 1e-2);
+  EXPECT_LT(result["metrics"]["reduced_chi_square"].get<double>(), 1e-2);
+}
+
+TEST(LineComparison, SaysWhatIsWrong) {
+  LineRequest request;
+  request.run = synthetic_run([](const Point&) { return false; });
+  request.grain = Direction::depth;
+  EXPECT_THROW(compare_line(request), NoGrain);
+  request.run = "nowhere/run.h5";
+  EXPECT_THROW(compare_line(request), InputError);
+  request.run = "validation/linescan/line_comparison_test.cpp";
+  EXPECT_THROW(compare_line(request), InputError);
+}
+
+}  // namespace
+}  // namespace meltproof::validation
