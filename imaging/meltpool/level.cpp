@@ -37,7 +37,7 @@ Threshold otsu(const std::vector<float>& v, double low, double high) {
     count[i] += 1;
     sum[i] += clipped;
   }
-  double all = 0, total = 0, dark_count = 0, dark_sum = 0, best = -1;
+  double all = 0, total = 0, dark_count = 0, dark_sum = 0, best = 0, first = 0;
   for (std::size_t i = 0; i < classes; ++i) {
     all += count[i];
     total += sum[i];
@@ -50,10 +50,14 @@ Threshold otsu(const std::vector<float>& v, double low, double high) {
     if (dark_count == 0 || bright_count == 0) continue;
     const double difference = dark_sum / dark_count - (total - dark_sum) / bright_count;
     const double between = dark_count * bright_count * difference * difference;
-    if (between > best) {
+    const double threshold = low + static_cast<double>(i + 1) / scale;
+    if (between > best * (1 + 1e-12)) {
       best = between;
-      result = {low + static_cast<double>(i + 1) / scale, (total - dark_sum) / bright_count};
+      first = threshold;
+      result.bright_mean = (total - dark_sum) / bright_count;
     }
+    // Empty classes between bright and dark make a plateau, whose middle is meant.
+    if (between >= best * (1 - 1e-12)) result.level = 0.5 * (first + threshold);
   }
   return result;
 }

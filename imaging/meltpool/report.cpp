@@ -101,10 +101,12 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
   j["frames_used"] = a.only_incomplete ? "all with a pool: in every one it touches the border of "
                                          "the image, so lengths are lower bounds"
                                        : "those whose pool does not touch the border of the image";
-  j["steady"] = {
-      {"mann_kendall_z", a.length.trend},
-      {"steady", a.length.steady()},
-      {"meaning", "the length neither rises nor falls over the frames used, at the 5 % level"}};
+  constexpr std::size_t enough_for_a_trend = 4;
+  if (a.length.n >= enough_for_a_trend)
+    j["steady"] = {
+        {"mann_kendall_z", a.length.trend},
+        {"steady", a.length.steady()},
+        {"meaning", "the length neither rises nor falls over the frames used, at the 5 % level"}};
   j["uncertainty_leaves_out"] =
       "the level itself, point spread, motion during the integration time, and non-uniformity of "
       "the pixels";
