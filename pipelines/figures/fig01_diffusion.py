@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fig. 1 of the paper: diffusion of a stripe of solute, exact and by SPH, with errors and orders."""
+
+import argparse
+
+import matplotlib.pyplot as plt
+import style
+import verification
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("verification", help="verification.json of meltproof-verify")
+    arguments.add_argument("--output", required=True, help="the SVG file to write")
+    given = arguments.parse_args()
+
+    cases = verification.load_cases(given.verification, ["stripe", "species"])
+    shown = cases[:2]
+    figure, panels = plt.subplots(1, len(shown) + 1, figsize=(style.PAGE_WIDTH, 2.5))
+    for axes, case in zip(panels, shown):
+        verification.plot_profile(axes, case, given.verification)
+    verification.plot_convergence(panels[-1], [case for case in cases if len(case["spacings_um"]) > 1])
+
+    style.save(figure, given.output, "Diffusion of a stripe of solute (the paper's Fig. 1)",
+               "Concentration across the stripe: the exact solution as a line, SPH particles as markers. Right: "
+               "relative L2 error against the particle spacing; the thick bar is the error asked at the finest "
+               "spacing. " + verification.caption_sentences(cases))
+
+
+style.run(main)

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Small synthetic artifacts in the form of the real ones, for the tests of figures and report.
+
+Nothing here is a simulation or a measurement, and nothing here ever reaches a report: tests write them
+into a temporary folder and throw them away.
+"""
+
+import csv
+import json
+import math
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+MICRON = 1e-6
+
+
+def put(file, name, values, units="1", description="synthetic, for a test"):
+    data_set = file.create_dataset(name, data=values)
+    data_set.attrs["units"], data_set.attrs["description"] = units, description
+
+
+def powder(path, additive_mass_fraction=0.05, seed=1):
+    rng = np.random.default_rng(seed)
+    count = 60
+    radius = rng.lognormal(math.log(7 * MICRON), 0.3, count)
+    centre = np.column_stack([rng.uniform(0, 390, count), rng.uniform(-60, 60, count), np.zeros(count)]) * MICRON
+    centre[:, 2] = radius
+    with h5py.File(path, "w") as file:
+        file.attrs["kind"] = "meltproof powder bed"
+        put(file, "spheres/centre", centre, "m")
+        put(file, "spheres/radius", radius, "m")
+        put(file, "spheres/material", (rng.random(count) < 0.2).astype("i4"))
+        put(file, "spheres/coordination", np.full(count, 3, "i4"))
+        put(file, "box/lower", np.array([0, -60, 0]) * MICRON, "m")
+        put(file, "box/upper", np.array([390, 60, 20]) * MICRON, "m")
+        for name, number in (("packing_density", 0.5), ("mean_coordination", 3.0),
+                             ("additive_mass_fraction", additive_mass_fraction)):
+            put(file, name, number)
+        for name, number in (("d10", 9), ("d50", 13.7), ("d90", 20)):
+            put(file, name, number * MICRON, "m")
+
+
+def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True):
+    """run.h5, history.csv and result.json of a made-up moving ellipsoid."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    axes = [np.arange(0, 390, spacing_um), np.arange(-97.5, 98, spacing_um), np.arange(-112.5, 15, spacing_um)]
+    x, y, z = (grid.ravel() for grid in np.meshgrid(*axes, indexing="ij"))
+    position = np.column_stack([x, y, z]) * MICRON
+    origin = np.where(z > 0, 1 + (np.sin(x) > 0.6), 0).astype("i4")
+    with h5py.File(folder / "run.h5", "w") as file:
+        file.attrs["kind"] = "meltproof run"
+        for name, number, units in (("spacing", spacing_um * MICRON, "m"), ("smoothing_length", spacing_um * MICRON, "m"),
+                                    ("scan_speed", 0.375, "m s-1"), ("laser_power", 175.0, "W"),
+                                    ("beam_radius", 40 * MICRON, "m"),
+                                    ("additive_mass_fraction", additive_mass_fraction, "1"),
+                                    ("reference_temperature", 1683.0, "K"), ("initial_temperature", 300.0, "K")):
+            put(file, name, number, units)
+        put(file, "domain/lower", position.min(axis=0), "m")
+        put(file, "domain/upper", position.max(axis=0), "m")
+        put(file, "origin", origin)
+        ever = np.zeros(len(x), bool)
+        for step in range(6):
+            beam_x = 60 + 50 * step
+            heat = 0.0 if step == 5 else 2600.0
+            distance = ((x - beam_x + 60) / 130) ** 2 + (y / 65) ** 2 + (z / 60) ** 2
+            temperature = 300 + heat * np.exp(-0.6 * distance)
+            ever |= temperature > 1683
+            group = f"snapshots/{step:04d}"
+            put(file, f"{group}/time", step / 9762.5, "s")
+            put(file, f"{group}/beam", np.array([beam_x, 0, 0]) * MICRON, "m")
+            put(file, f"{group}/position", position, "m")
+            put(file, f"{group}/temperature", temperature, "K")
+            put(file, f"{group}/concentration", np.where(origin == 2, 0.8, 0.01) * (additive_mass_fraction > 0))
+            put(file, f"{group}/liquid_fraction", (temperature > 1683).astype(float))
+            put(file, f"{group}/identity", np.arange(len(x), dtype="i8"))
+        put(file, "melted", ever.astype("u1"))
+    with (folder / "history.csv").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["time [us]", "dt [us]", "pool_length [um]", "pool_width [um]", "pool_depth [um]",
+                         "any_liquid_length [um]", "peak_temperature [K]"])
+        for time in range(0, 1000, 20):
+            grown = 1 - math.exp(-time / 300)
+            writer.writerow([time, 1, 250 * grown, 120 * grown, 60 * grown, 260 * grown, 2900])
+    case = f"track_{100 * additive_mass_fraction:.0f}wt" if powder_layer else "track_316L_175W_750"
+    (folder / "result.json").write_text(json.dumps({
+        "case": case, "spacing_um": spacing_um, "additive_wt_percent": 100 * additive_mass_fraction,
+        "pool_length_um": 250.0, "pool_length_u_um": 9.0, "pool_width_um": 120.0, "pool_depth_um": 60.0,
+        "any_liquid_length_um": 260.0, "energy_relative_error": 1e-12, "species_relative_error": 1e-15,
+        "particles": len(x), "steps": 1000, "wall_time_s": 12.0, "revision": "synthetic", "window": "a synthetic window"}))
+
+
+def recording(path, seed=2):
+    rng = np.random.default_rng(seed)
+    rows, columns = np.mgrid[0:40, 0:96]
+    frames = [300 + 9000 * np.exp(-((columns - 20 - 4 * k) / 8) ** 2 - ((rows - 20) / 4) ** 2)
+              + rng.normal(0, 20, (40, 96)) for k in range(8)]
+    with h5py.File(path, "w") as file:
+        file.attrs["kind"] = "meltproof recording"
+        file.attrs["quantity"], file.attrs["synthetic"] = "counts", "made up for a test"
+        put(file, "frames", np.clip(frames, 0, 16383).astype("u2"), "count")
+        put(file, "time", np.arange(8) / 9762.5, "s")
+        for name, number, units in (("integration_time", 2e-5, "s"), ("frame_rate", 9762.5, "Hz"),
+                                    ("pixel_size", 17.6e-6, "m"), ("saturation_count", 16383, "count")):
+            put(file, name, number, units)
+
+
+def verification(path, profiles):
+    profiles = Path(profiles)
+    profiles.mkdir(parents=True, exist_ok=True)
+    cases = []
+    for name, quantity in (("species_stripe_2um", "concentration"), ("species_stripe_20um", "concentration"),
+                           ("conduction_slab", "temperature"), ("stefan_0.1", "temperature"),
+                           ("stefan_0.5", "temperature"), ("stefan_1", "temperature")):
+        table = profiles / f"{name}.csv"
+        with table.open("w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(["position [um]", f"exact [{'1' if 'species' in name else 'K'}]", "1 um", "2 um"])
+            for position in range(0, 101, 2):
+                exact = math.exp(-((position - 50) / 10) ** 2)
+                writer.writerow([position, exact, exact * 1.01, exact * 1.04 if position % 4 == 0 else ""])
+        cases.append({"name": name, "title": name.replace("_", " ").capitalize() + " (synthetic)",
+                      "reference": "synthetic", "quantity": quantity, "error": 0.005, "asked": 0.01, "order": 2.0,
+                      "pass": True, "spacings_um": [1, 2, 4], "errors": [0.005, 0.02, 0.08],
+                      "profile_csv": str(table)})
+    Path(path).write_text(json.dumps({"cases": cases}))
