@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/particles/particles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace meltproof::solver {
+namespace {
+
+/// Spreads the lowest 21 bits so that two zero bits stand between each.
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32U) & 0x1f00000000ffff;
+  x = (x | x << 16U) & 0x1f0000ff0000ff;
+  x = (x | x << 8U) & 0x100f00f00f00f00f;
+  x = (x | x << 4U) & 0x10c30c30c30c30c3;
+  x = (x | x << 2U) & 0x1249249249249249;
+  return x;
+}
+
+template <class T>
+void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+  std::vector<T> sorted(values.size());
+  std::transform(order.begin(), order.end(), sorted.begin(),
+                 [&](std::uint32_t i) { return values[i]; });
+  values = std::move(sorted);
+}
+
+}  // namespace
+
+void Particles::add(std::int64_t id, const Vector& at, double m, double v, double h, double c,
+                    Origin from) {
+  identity.push_back(id);
+  position.push_back(at);
+  mass.push_back(m);
+  volume.push_back(v);
+  enthalpy.push_back(h);
+  concentration.push_back(c);
+  temperature.push_back(0);
+  liquid_fraction.push_back(0);
+  peak_temperature.push_back(0);
+  origin.push_back(from);
+  melted.push_back(0);
+}
+
+void sort_in_space(Particles& particles, double cell_size) {
+  Vector lower;
+  lower.fill(std::numeric_limits<double>::infinity());
+  for (const auto& at : particles.position) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      lower[d] = std::min(lower[d], at[d]);
+    }
+  }
+  std::vector<std::uint64_t> key(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    std::array<std::uint64_t, 3> cell{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      cell[d] = static_cast<std::uint64_t>((particles.position[i][d] - lower[d]) / cell_size);
+    }
+    key[i] = spread(cell[0]) | spread(cell[1]) << 1U | spread(cell[2]) << 2U;
+  }
+  std::vector<std::uint32_t> order(particles.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return key[a] != key[b] ? key[a] < key[b] : particles.identity[a] < particles.identity[b];
+  });
+  permute(particles.identity, order);
+  permute(particles.position, order);
+  permute(particles.mass, order);
+  permute(particles.volume, order);
+  permute(particles.enthalpy, order);
+  permute(particles.concentration, order);
+  permute(particles.temperature, order);
+  permute(particles.liquid_fraction, order);
+  permute(particles.peak_temperature, order);
+  permute(particles.origin, order);
+  permute(particles.melted, order);
+}
+
+}  // namespace meltproof::solver

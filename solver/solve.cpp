@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <omp.h>
+
+#include "base/program.hpp"
+#include "base/provenance.hpp"
+#include "solver/case/track_run.hpp"
+
+int main(int argc, char** argv) {
+  using namespace meltproof;
+  Program program(
+      "meltproof-solve",
+      "Simulates a single laser track: heat, melting and alloy diffusion in three dimensions.\n"
+      "Example: meltproof-solve solver/cases/track_1wt.toml --powder powder.h5 --output run/");
+  InputOptions options;
+  options.add_to(program.app, "the track");
+  std::string powder, output;
+  int threads = omp_get_max_threads();
+  program.app.add_option("--powder", powder,
+                         "powder bed made by meltproof-powder (same as --set powder.bed=FILE)");
+  program.app.add_option("-o,--output", output, "folder for run.h5, history.csv and result.json");
+  program.app.add_option("--threads", threads, "threads; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+  return program.run(argc, argv, [&] {
+    solver::TrackCase track;
+    Input input = solver::declare(track);
+    if (!powder.empty()) {
+      options.overrides.push_back("powder.bed=" + powder);
+    }
+    if (options.handle(input)) {
+      return ExitStatus::success;
+    }
+    if (output.empty()) {
+      throw InputError(
+          "--output is missing: name the folder for the results, for example --output run/");
+    }
+    omp_set_num_threads(threads);
+    Provenance provenance = begin_provenance(argc, argv);
+    provenance.resolved_input = input.resolved();
+    provenance.threads = threads;
+    for (const auto& file : input.files()) {
+      provenance.add_input(file);
+    }
+    const std::string name = std::filesystem::path(options.path).stem().string();
+    const auto result = solver::run_track(track, name, output, provenance, program.quiet());
+    if (!program.quiet()) {
+      fmt::print(
+          "{}: pool length {:.1f} um, width {:.1f} um, depth {:.1f} um ({}); any liquid {:.1f} um; "
+          "energy closes to "
+          "{:.1e}, additive mass to {:.1e}; {} steps in {:.0f} s\n",
+          name, result["pool_length_um"].get<double>(), result["pool_width_um"].get<double>(),
+          result["pool_depth_um"].get<double>(), result["window"].get<std::string>(),
+          result["any_liquid_length_um"].get<double>(),
+          result["energy_relative_error"].get<double>(),
+          result["species_relative_error"].get<double>(), result["steps"].get<std::size_t>(),
+          result["wall_time_s"].get<double>());
+    }
+    return ExitStatus::success;
+  });
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "solver/particles/kernel.hpp"
+#include "solver/particles/neighbours.hpp"
+
+namespace meltproof::solver {
+
+/// **Heat conduction in enthalpy form**: dH_i/dt = 1/rho_i sum_j V_j 4 k_i k_j/(k_i + k_j) F_ij
+/// (T_i - T_j). Harmonic mean of the conductivities, so that the flux is continuous where they
+/// jump. (Cleary & Monaghan 1999) Returns one summand without 1/rho_i, W m-3. Antisymmetric once
+/// multiplied by V_i.
+template <class T>
+T conduction_pair(const T& conductivity_i, const T& temperature_i, const T& conductivity_j,
+                  const T& temperature_j, const T& volume_j, const T& gradient_factor) {
+  const T mean = 4.0 * conductivity_i * conductivity_j / (conductivity_i + conductivity_j);
+  return volume_j * mean * gradient_factor * (temperature_i - temperature_j);
+}
+
+/// What the conduction pass needs of a particle, packed into one cache line.
+struct alignas(64) HeatRecord {
+  double x = void_position, y = void_position, z = void_position;  ///< m
+  double volume = 0;                                               ///< m^d
+  double temperature = 0;                                          ///< K
+  double conductivity = 1;                                         ///< W m-1 K-1
+};
+
+/// Conducted power per volume of every particle, W m-3.
+/// @param records particles, then ghosts, then the void; @param power size n, overwritten.
+void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+             const QuinticSpline& kernel, std::vector<double>& power);
+
+}  // namespace meltproof::solver

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/terms/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meltproof::solver {
+
+SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper) {
+  SurfaceColumns columns;
+  columns.lower_x = lower[0];
+  columns.lower_y = lower[1];
+  columns.width = particles.spacing / 2;
+  columns.count_x = static_cast<std::size_t>(std::llround((upper[0] - lower[0]) / columns.width));
+  columns.count_y = static_cast<std::size_t>(std::llround((upper[1] - lower[1]) / columns.width));
+  columns.top.assign(columns.count_x * columns.count_y, SurfaceColumns::none);
+  const auto higher = [&](std::uint32_t a, std::uint32_t b) {
+    const double za = particles.position[a][2], zb = particles.position[b][2];
+    return za != zb ? za > zb : particles.identity[a] < particles.identity[b];
+  };
+  // Column axes within [-spacing/2, spacing/2) of the particle: always two by two. Rounding the
+  // lower edge keeps that count when a particle sits exactly between columns, as on the starting
+  // lattice.
+  const auto first_column = [&](double x, double edge) {
+    return static_cast<std::int64_t>(
+        std::llround((x - particles.spacing / 2 - edge) / columns.width));
+  };
+  for (std::uint32_t i = 0; i < particles.size(); ++i) {
+    const std::int64_t x0 = first_column(particles.position[i][0], columns.lower_x);
+    const std::int64_t y0 = first_column(particles.position[i][1], columns.lower_y);
+    for (std::int64_t iy = std::max<std::int64_t>(0, y0);
+         iy < std::min<std::int64_t>(y0 + 2, static_cast<std::int64_t>(columns.count_y)); ++iy) {
+      for (std::int64_t ix = std::max<std::int64_t>(0, x0);
+           ix < std::min<std::int64_t>(x0 + 2, static_cast<std::int64_t>(columns.count_x)); ++ix) {
+        auto& top =
+            columns
+                .top[static_cast<std::size_t>(iy) * columns.count_x + static_cast<std::size_t>(ix)];
+        if (top == SurfaceColumns::none || higher(i, top)) {
+          top = i;
+        }
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace meltproof::solver
