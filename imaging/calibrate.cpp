@@ -33,7 +33,8 @@ constexpr const char* about =
 
 double length(const std::string& option, const std::string& text) {
   try {
-    return parse_quantity(text, "m");
+    // By way of micrometres, so that "100 um" is not 99.99999999999999 um in the result.
+    return parse_quantity(text, "um") / 1e6;
   } catch (const InputError& error) {
     throw InputError(option + ": " + error.what());
   }
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
       fmt::print(stderr, "meltproof-calibrate: {}\n", nothing.what());
       return ExitStatus::no_result;
     }
-    const imaging::PixelSize size = imaging::pixel_size(images, graduation);
+    const imaging::CalibratedPixel size = imaging::pixel_size(images, graduation);
 
     nlohmann::json json = imaging::calibration_json(size, images, graduation);
     json["provenance"] = provenance.json();

@@ -118,7 +118,7 @@ TEST(Calibration, DriftOfThePeriodIsFoundAndWidensTheUncertainty) {
   scene.period_drift = 0.01;
   const ScaleImage image = measure_scale(picture(scene), "synthetic");
   EXPECT_NEAR(image.stripes.drift, 0.01, 3 * image.stripes.drift_uncertainty + 2e-4);
-  const PixelSize size = pixel_size({image}, {100e-6, 0, false});
+  const CalibratedPixel size = pixel_size({image}, {100e-6, 0, false});
   EXPECT_NEAR(size.u_x / size.x, 0.01 / std::sqrt(12.0), 1e-4);
 }
 
@@ -131,7 +131,7 @@ TEST(Calibration, TwoImagesGiveBothAxesOfObliquePixels) {
   const ScaleImage x = measure_scale(picture(scene), "x"),
                    y = measure_scale(picture(turned(scene, true)), "y");
   const Graduation graduation{100e-6, 0.1e-6, false};
-  const PixelSize size = pixel_size({y, x}, graduation);
+  const CalibratedPixel size = pixel_size({y, x}, graduation);
   EXPECT_NEAR(size.x / 17.6e-6, 1, 3e-5);
   EXPECT_NEAR(size.y / 17.9e-6, 1, 5e-5);
   EXPECT_NEAR(size.u_x / size.x, 1e-3, 1e-5);  // the certificate's share

@@ -215,15 +215,18 @@ void regress(EdgeFit& fit) {
     sum += line.column - solution(0) - solution(1) * line.index - solution(2) * line.row;
     ++count;
   }
-  double excess = 0, mean_index = 0, spread = 0;
+  double scatter = 0, expected = 0, mean_index = 0, spread = 0;
   const auto number = static_cast<double>(deviations.size());
   for (const auto& [index, deviation] : deviations) {
     const double mean = deviation.first / deviation.second;
-    excess += (mean * mean - fit.residual * fit.residual / deviation.second) / number;
+    scatter += mean * mean / number;
+    expected += fit.residual * fit.residual / deviation.second / number;
     mean_index += index / number;
   }
   for (const auto& [index, deviation] : deviations) spread += std::pow(index - mean_index, 2);
-  fit.inequality = std::sqrt(std::max(excess, 0.0));
+  // A sum of squares of `number` noises scatters by sqrt(2 / number) of itself.
+  const bool significant = scatter > expected * (1 + 3 * std::sqrt(2 / number));
+  fit.inequality = significant ? std::sqrt(scatter - expected) : 0.0;
   fit.inequality_uncertainty = fit.inequality / std::sqrt(spread) / std::abs(solution(1));
 
   // fx = 1/b, fy = -c/b

@@ -108,7 +108,7 @@ cv::Mat folded_plot(const ScaleImage& image, int height) {
 
 }  // namespace
 
-cv::Mat fit_picture(const std::vector<ScaleImage>& images, const PixelSize& size) {
+cv::Mat fit_picture(const std::vector<ScaleImage>& images, const CalibratedPixel& size) {
   cv::Mat canvas;
   for (const auto& image : images) {
     const int factor = std::clamp(900 / image.image.cols, 1, 9);

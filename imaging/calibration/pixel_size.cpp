@@ -108,7 +108,7 @@ ScaleImage measure_scale(const std::filesystem::path& path) {
   return out;
 }
 
-PixelSize pixel_size(const std::vector<ScaleImage>& images, const Graduation& graduation) {
+CalibratedPixel pixel_size(const std::vector<ScaleImage>& images, const Graduation& graduation) {
   if (images.empty() || images.size() > 2)
     throw InputError(
         fmt::format("A calibration takes one image of the scale, or two, one per axis; "
@@ -133,7 +133,7 @@ PixelSize pixel_size(const std::vector<ScaleImage>& images, const Graduation& gr
                       image.name, duty));
   }
 
-  PixelSize size;
+  CalibratedPixel size;
   const double period = graduation.period();
   double fit_x = 0, fit_y = 0;
   if (images.size() == 1) {
@@ -185,7 +185,7 @@ PixelSize pixel_size(const std::vector<ScaleImage>& images, const Graduation& gr
   return size;
 }
 
-nlohmann::json calibration_json(const PixelSize& size, const std::vector<ScaleImage>& images,
+nlohmann::json calibration_json(const CalibratedPixel& size, const std::vector<ScaleImage>& images,
                                 const Graduation& graduation) {
   using nlohmann::json;
   json out;

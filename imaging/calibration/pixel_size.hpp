@@ -58,7 +58,7 @@ struct BudgetEntry {
 };
 
 /// The result.
-struct PixelSize {
+struct CalibratedPixel {
   double x = 0, y = 0;                          ///< m
   double u_x = 0, u_y = 0;                      ///< m, standard uncertainties
   bool x_measured = false, y_measured = false;  ///< otherwise square pixels were assumed
@@ -71,10 +71,10 @@ struct PixelSize {
 /// image pixels are taken as square.
 /// @throws InputError for no image, more than two, two across one axis, a graduation that is not
 ///         positive, or a line width stated for a scale whose lines and gaps differ.
-PixelSize pixel_size(const std::vector<ScaleImage>& images, const Graduation& graduation);
+CalibratedPixel pixel_size(const std::vector<ScaleImage>& images, const Graduation& graduation);
 
 /// The content of calibration.json, without provenance.
-nlohmann::json calibration_json(const PixelSize& size, const std::vector<ScaleImage>& images,
+nlohmann::json calibration_json(const CalibratedPixel& size, const std::vector<ScaleImage>& images,
                                 const Graduation& graduation);
 
 }  // namespace meltproof::imaging
