@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every result in this file is synthetic: made up to exercise the runner.
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "validation/compare/metric.hpp"
+#include "validation/compare/rule.hpp"
+#include "validation/compare/runner.hpp"
+
+namespace meltproof::validation {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A folder of synthetic results.
+class Results : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / "synthetic_results";
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "desk");
+    places_ = {folder_ / "desk", folder_ / "verification.json", "data/experiments"};
+  }
+  void put(const std::string& file, const json& content) const {
+    std::ofstream(folder_ / file) << content;
+  }
+  Row width_row() const {
+    Row row;
+    row.name = "width";
+    row.kind = "validation";
+    row.quantity = "width";
+    row.unit = "um";
+    row.metric = "difference";
+    row.rule = "within_uncertainty";
+    row.verdict = "agrees";
+    row.simulated = {.file = "track.json", .value = "/width_m", .unit = "m"};
+    row.reference = {.campaign = "tracks316l", .file = "hofmann2026.csv", .column = "width"};
+    row.reference.where = {"power = 175", "speed = 750"};
+    row.has_reference = true;
+    return row;
+  }
+  Row error_row() const {
+    Row row;
+    row.name = "error";
+    row.metric = "error_norm";
+    row.rule = "at_most";
+    row.limit = 0.01;
+    row.verdict = "agrees";
+    row.simulated.verification_case = "slab";
+    return row;
+  }
+  Row trend_row() const {
+    Row row;
+    row.name = "trend";
+    row.unit = "um";
+    row.metric = "trend";
+    row.rule = "rises";
+    row.verdict = "agrees";
+    row.simulated = {
+        .files = {"a.json", "b.json", "c.json"}, .value = "/l", .uncertainty = "/u", .unit = "um"};
+    row.reference = {.campaign = "wimmer2021", .file = "fig5_trend.csv", .column = "length_rank"};
+    row.has_reference = true;
+    return row;
+  }
+  fs::path folder_;
+  Places places_;
+};
+
+TEST_F(Results, ADifferenceIsJudgedByItsUncertainty) {
+  Row row = width_row();  // D = 127.7 um, u_D = 6.6 %
+  put("desk/track.json", {{"width_m", 120e-6}});
+  const auto near = run_row(row, places_);
+  EXPECT_EQ(near.verdict, "agrees");
+  EXPECT_NEAR(*near.numbers.error, -7.7, 1e-9);
+  EXPECT_NEAR(*near.numbers.u_val, 0.066 * 127.7, 1e-9);
+  EXPECT_NEAR(*near.numbers.upper, -7.7 + 2 * 0.066 * 127.7, 1e-9);
+  EXPECT_EQ(near.failure, "");
+  EXPECT_NE(near.source.find("Hofmann"), std::string::npos);
+  put("desk/track.json", {{"width_m", 100e-6}});
+  const auto far = run_row(row, places_);
+  EXPECT_EQ(far.verdict, "differs");
+  EXPECT_NE(far.failure.find("\"width\""), std::string::npos);
+  row.verdict = "differs";
+  EXPECT_EQ(run_row(row, places_).failure, "");
+}
+
+TEST_F(Results, TheSpacingEntersTheNumericalUncertainty) {
+  Row row = width_row();
+  row.simulated.spacing = "/spacing_m";
+  row.simulated.uncertainty = "/u_m";
+  put("desk/track.json", {{"width_m", 120e-6}, {"spacing_m", 10e-6}, {"u_m", 3e-6}});
+  EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
+}
+
+TEST_F(Results, AMissingNumberIsNamedAndFails) {
+  const Row row = width_row();
+  EXPECT_NE(run_row(row, places_).failure.find("track.json is missing"), std::string::npos);
+  put("desk/track.json", {{"height_m", 1}});
+  EXPECT_NE(run_row(row, places_).failure.find("nothing at /width_m"), std::string::npos);
+  std::ofstream(folder_ / "desk/track.json") << "{\"width_m\": 1";
+  const auto broken = run_row(row, places_);
+  EXPECT_EQ(broken.verdict, "not computed");
+  EXPECT_NE(broken.failure.find("no JSON"), std::string::npos);
+}
+
+TEST_F(Results, ARowThatWaitsForASimulationMustBeDeclaredOnceItIsThere) {
+  Row row = width_row();
+  row.verdict = "pending";
+  row.waits_for = "simulation";
+  const auto waiting = run_row(row, places_);
+  EXPECT_EQ(waiting.verdict, "pending");
+  EXPECT_EQ(waiting.failure, "");
+  EXPECT_EQ(waiting.numbers.measured, 127.7);
+  put("desk/track.json", {{"width_m", 120e-6}});
+  EXPECT_NE(run_row(row, places_).failure.find("declares \"pending\""), std::string::npos);
+}
+
+TEST_F(Results, AnEmptySlotIsPendingAndStillNeedsItsSimulation) {
+  Row row = width_row();
+  row.verdict = "pending";
+  row.waits_for = "reference";
+  row.reference = {.campaign = "wimmer2021", .file = "fig5_length.csv", .column = "length"};
+  row.reference.where = {"additive = 5"};
+  EXPECT_EQ(run_row(row, places_).verdict, "not computed");
+  put("desk/track.json", {{"width_m", 300e-6}});
+  const auto result = run_row(row, places_);
+  EXPECT_EQ(result.verdict, "pending");
+  EXPECT_NEAR(*result.numbers.simulated, 300, 1e-9);
+  EXPECT_FALSE(result.numbers.measured || result.numbers.error);
+  EXPECT_EQ(result.failure, "");
+  row.verdict = "agrees";
+  EXPECT_NE(run_row(row, places_).failure.find("but it is pending"), std::string::npos);
+}
+
+TEST_F(Results, ACaseIsJudgedByTheTableNotByItself) {
+  const auto write = [this](double error, double asked) {
+    put("verification.json", {{"cases", {{{"name", "slab"}, {"error", error}, {"asked", asked}}}}});
+  };
+  write(0.004, 0.01);
+  EXPECT_EQ(run_row(error_row(), places_).verdict, "agrees");
+  write(0.02, 0.01);
+  EXPECT_EQ(run_row(error_row(), places_).verdict, "differs");
+  write(0.02, 0.05);
+  EXPECT_NE(run_row(error_row(), places_).failure.find("asks for 0.05"), std::string::npos);
+  Row other = error_row();
+  other.simulated.verification_case = "sphere";
+  EXPECT_NE(run_row(other, places_).failure.find("no case \"sphere\""), std::string::npos);
+}
+
+TEST_F(Results, ATrendMustRiseBeyondItsScatter) {
+  const auto write = [this](double a, double b, double c) {
+    put("desk/a.json", {{"l", a}, {"u", 3}});
+    put("desk/b.json", {{"l", b}, {"u", 3}});
+    put("desk/c.json", {{"l", c}, {"u", 3}});
+  };
+  write(300, 320, 350);
+  const auto rising = run_row(trend_row(), places_);
+  EXPECT_EQ(rising.verdict, "agrees");
+  EXPECT_NEAR(*rising.numbers.simulated, 20, 1e-12);
+  EXPECT_EQ(rising.numbers.details["trend"], "rises");
+  write(300, 304, 350);
+  EXPECT_EQ(run_row(trend_row(), places_).verdict, "differs");
+  EXPECT_EQ(run_row(trend_row(), places_).numbers.details["trend"], "undecided");
+  write(300, 320, 290);
+  EXPECT_EQ(run_row(trend_row(), places_).numbers.details["trend"], "falls");
+}
+
+TEST_F(Results, ACurveIsPendingUntilItsPointsAreThere) {
+  Row row;
+  row.name = "profile";
+  row.metric = "curve";
+  row.rule = "at_most";
+  row.limit = 0.05;
+  row.verdict = "pending";
+  row.waits_for = "reference";
+  row.simulated = {.file = "line.json", .value = "/metrics/RMSE"};
+  row.reference = {.campaign = "wimmer2021", .file = "fig7_depth.csv", .column = "concentration"};
+  row.has_reference = true;
+  EXPECT_EQ(run_row(row, places_).verdict, "not computed");
+  put("desk/line.json", {{"status", "pending"}, {"metrics", nullptr}});
+  EXPECT_EQ(run_row(row, places_).verdict, "pending");
+  EXPECT_EQ(run_row(row, places_).failure, "");
+}
+
+TEST_F(Results, TheReportHoldsEveryRowAndEveryFailure) {
+  ComparisonTable table;
+  table.rows.push_back(width_row());
+  table.rows.push_back(error_row());
+  put("desk/track.json", {{"width_m", 120e-6}});
+  const auto results = run_table(table, places_);
+  const auto document = report(results, "desk");
+  EXPECT_EQ(document["rows"].size(), 2u);
+  EXPECT_EQ(document["failures"].size(), 1u);
+  EXPECT_EQ(document["summary"]["agrees"], 1);
+  EXPECT_EQ(document["summary"]["not computed"], 1);
+  for (const char* key : {"name", "title", "kind", "rule", "S", "D", "E", "u_num", "u_input", "u_D",
+                          "u_val", "unit", "verdict", "declared", "reason", "figure", "source"}) {
+    EXPECT_TRUE(document["rows"][0].contains(key)) << key;
+  }
+  EXPECT_TRUE(document["rows"][0]["u_num"].is_null());
+  EXPECT_NE(text_table(results).find("not as declared"), std::string::npos);
+}
+
+TEST_F(Results, BiasAndScatterNeedTwoRowsOfAQuantity) {
+  ComparisonTable table;
+  table.rows.push_back(width_row());
+  put("desk/track.json", {{"width_m", 127.7e-6 * 1.1}, {"b", 178e-6 * 1.1}});
+  EXPECT_TRUE(statistics(run_table(table, places_)).empty());
+  Row other = width_row();
+  other.simulated.value = "/b";
+  other.reference.where = {"power = 150", "speed = 300", "powder = 0"};
+  table.rows.push_back(other);
+  const auto found = statistics(run_table(table, places_));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0]["points"], 2);
+  EXPECT_TRUE(found[0]["scatter_is_noise"]);
+}
+
+TEST(Rules, NeedTheNumbersThatTheyCompare) {
+  Row row;
+  row.metric = "error_norm";
+  row.rule = "within_uncertainty";
+  RowNumbers numbers;
+  numbers.simulated = 1;
+  EXPECT_THROW(obeys(row, numbers), InputError);
+  EXPECT_EQ(rule_text(row), "|E| <= 2 u_val");
+}
+
+}  // namespace
+}  // namespace meltproof::validation

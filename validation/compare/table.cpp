@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "validation/compare/table.hpp"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "validation/compare/metric.hpp"
+#include "validation/compare/rule.hpp"
+
+namespace meltproof::validation {
+namespace {
+
+InputTable simulated_table(SimulatedSource& s) {
+  InputTable table("simulated", "Where the simulated number stands.");
+  table
+      .text(s.verification_case,
+            {.name = "case", .about = "A case of verification.json, instead of a file."})
+      .text(s.file, {.name = "file", .about = "JSON file in the folder of the profile."})
+      .texts(s.files, {.name = "files", .about = "JSON files of a trend, in its order."})
+      .text(s.value, {.name = "value", .about = "JSON pointer to the number."})
+      .text(s.uncertainty,
+            {.name = "uncertainty", .about = "JSON pointer to its standard uncertainty."})
+      .text(s.spacing, {.name = "spacing",
+                        .about = "JSON pointer to the particle spacing: both edges of an extent "
+                                 "are taken as known to within one, so u = spacing / sqrt(6)."})
+      .text(s.unit, {.name = "unit", .about = "Of these numbers (udunits2)."});
+  return table;
+}
+
+InputTable reference_table(ReferenceSource& r) {
+  InputTable table("reference", "Where the measured number stands.");
+  table
+      .text(r.campaign,
+            {.name = "campaign", .about = "Folder in data/experiments.", .required = true})
+      .text(r.file, {.name = "file", .about = "CSV file of the campaign.", .required = true})
+      .text(r.column, {.name = "column", .about = "Column of the file.", .required = true})
+      .texts(r.where, {.name = "where",
+                       .about = "Conditions \"column = value\" that pick one row of the file."})
+      .quantity(r.relative_uncertainty,
+                {.name = "relative_uncertainty",
+                 .unit = "1",
+                 .about = "Standard uncertainty as a share of the number, added in quadrature.",
+                 .minimum = 0,
+                 .maximum = 1});
+  return table;
+}
+
+InputTable row_table(Row& row) {
+  InputTable table("row", "One comparison.");
+  table.text(row.name, {.name = "name", .about = "Short and unique.", .required = true})
+      .text(row.title, {.name = "title", .about = "For the report.", .required = true})
+      .text(row.kind, {.name = "kind",
+                       .about = "Against an exact solution, a published computation, a "
+                                "measurement, or an order of settings.",
+                       .required = true,
+                       .choices = {"verification", "benchmark", "validation", "trend"}})
+      .text(row.quantity, {.name = "quantity", .about = "What is compared.", .required = true})
+      .text(row.unit, {.name = "unit", .about = "Of all numbers of the row (udunits2)."})
+      .text(row.window, {.name = "window", .about = "What was averaged.", .required = true})
+      .text(row.metric, {.name = "metric",
+                         .about = "What is computed.",
+                         .required = true,
+                         .choices = metric_names()})
+      .text(row.rule, {.name = "rule",
+                       .about = "When the row agrees.",
+                       .required = true,
+                       .choices = rule_names()})
+      .text(row.rule_reason, {.name = "rule_reason", .about = "Why this rule.", .required = true})
+      .quantity(row.limit, {.name = "limit",
+                            .unit = "1",
+                            .about = "Of the rule at_most, a number in the row's unit.",
+                            .minimum = 0})
+      .quantity(row.coverage, {.name = "coverage",
+                               .unit = "1",
+                               .about = "k: how many standard uncertainties a rule allows.",
+                               .minimum = 0})
+      .quantity(row.input_uncertainty,
+                {.name = "input_uncertainty",
+                 .unit = "1",
+                 .about = "u_input in the row's unit; left out: not evaluated.",
+                 .minimum = 0})
+      .text(row.figure, {.name = "figure", .about = "That shows it.", .required = true})
+      .text(row.verdict, {.name = "verdict",
+                          .about = "What the row is known to give.",
+                          .required = true,
+                          .choices = {"agrees", "differs", "pending"}})
+      .text(row.reason, {.name = "reason", .about = "Of the verdict.", .required = true})
+      .text(row.waits_for, {.name = "waits_for",
+                            .about = "What a pending row waits for.",
+                            .choices = {"reference", "simulation"}})
+      .table(simulated_table(row.simulated))
+      .table(reference_table(row.reference), &row.has_reference);
+  return table;
+}
+
+}  // namespace
+
+Input comparison_input(ComparisonTable& table) {
+  InputTable root("The comparison table", "One row is one comparison.");
+  root.tables(
+      "row", "The comparisons, in the order of the report.",
+      [&table](std::size_t) { return row_table(table.rows.emplace_back()); }, true);
+  return Input(std::move(root));
+}
+
+void check(const ComparisonTable& table, const std::filesystem::path& path) {
+  std::set<std::string> names;
+  const auto refuse = [&](const Row& row, const std::string& what) {
+    throw InputError(fmt::format("{}: row \"{}\": {}.", path.string(), row.name, what));
+  };
+  for (const auto& row : table.rows) {
+    if (!names.insert(row.name).second) {
+      refuse(row, "there are two rows of this name: give each its own");
+    }
+    if ((row.verdict == "pending") == row.waits_for.empty()) {
+      refuse(row, row.waits_for.empty()
+                      ? "it is pending but does not say what it waits_for (reference or simulation)"
+                      : "it waits_for something although its verdict is not pending");
+    }
+    const auto& s = row.simulated;
+    const int sources = (s.verification_case.empty() ? 0 : 1) + (s.file.empty() ? 0 : 1) +
+                        (s.files.empty() ? 0 : 1);
+    if (sources != 1) {
+      refuse(row, "expected exactly one of case, file and files under [row.simulated]");
+    }
+    if (s.verification_case.empty() && s.value.empty()) {
+      refuse(row, "[row.simulated] names no value: expected a JSON pointer");
+    }
+    if (row.metric != "error_norm" && !row.has_reference) {
+      refuse(row, fmt::format("the metric \"{}\" needs a [row.reference]", row.metric));
+    }
+  }
+}
+
+}  // namespace meltproof::validation

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The comparison table: one row is one comparison, stated before its data are seen.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/input.hpp"
+
+namespace meltproof::validation {
+
+/// Where the simulated number of a row stands. Files are named from the folder of the profile.
+struct SimulatedSource {
+  std::string verification_case = {};   ///< name of a case in verification.json, instead of a file
+  std::string file = {};                ///< JSON
+  std::vector<std::string> files = {};  ///< JSON, in the order of the settings of a trend
+  std::string value = {};               ///< JSON pointer to the number, "/pool_length_um"
+  std::string uncertainty = {};         ///< JSON pointer to its standard uncertainty; empty: none
+  std::string spacing = {};             ///< JSON pointer to the particle spacing; empty: none
+  std::string unit = "1";               ///< of value, uncertainty and spacing
+};
+
+/// Where the measured number of a row stands.
+struct ReferenceSource {
+  std::string campaign = {};  ///< folder in data/experiments
+  std::string file = {}, column = {};
+  /// Conditions that pick one row of the file; empty: all rows.
+  std::vector<std::string> where = {};
+  double relative_uncertainty = 0;  ///< standard, added to what the campaign declares
+};
+
+struct Row {
+  std::string name, title;
+  std::string kind;         ///< verification, benchmark, validation, trend
+  std::string quantity;     ///< length, width, depth, ...: rows of one quantity share a statistic
+  std::string unit = "1";   ///< of S, D, E and u
+  std::string window;       ///< what was averaged, in words
+  std::string metric;       ///< what is computed, see compare/metric.hpp
+  std::string rule;         ///< when it agrees, see compare/rule.hpp
+  std::string rule_reason;  ///< why this rule
+  double limit = 0;         ///< of rule "at_most", in `unit`
+  double coverage = 2;      ///< k of the rules with an uncertainty
+  std::optional<double> input_uncertainty;  ///< u_input in `unit`; absent: not evaluated
+  std::string figure;
+  std::string verdict;    ///< declared: agrees, differs, pending
+  std::string reason;     ///< of the declared verdict
+  std::string waits_for;  ///< of a pending row: reference or simulation
+  SimulatedSource simulated;
+  ReferenceSource reference;
+  bool has_reference = false;
+};
+
+struct ComparisonTable {
+  std::deque<Row> rows;
+};
+
+/// The declaration of validation/comparisons.toml bound to `table`, which must outlive it.
+Input comparison_input(ComparisonTable& table);
+
+/// @throws InputError as Input::read, and for: two rows of one name, a pending row that does not
+/// say
+///         what it waits for or another one that does, a row without a simulated source, a metric
+///         "difference", "curve" or "trend" without a reference.
+void check(const ComparisonTable& table, const std::filesystem::path& path);
+
+}  // namespace meltproof::validation
