@@ -14,6 +14,8 @@ import h5py
 import numpy as np
 
 MICRON = 1e-6
+PROVENANCE = {"program": "synthetic", "command": "synthetic", "inputs": [], "libraries": {}, "seed": 1,
+              "threads": 1, "ranks": 1, "wall_time_s": 1.0, "revision": "synthetic"}
 
 
 def put(file, name, values, units="1", description="synthetic, for a test"):
@@ -53,14 +55,13 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
     with h5py.File(folder / "run.h5", "w") as file:
         file.attrs["kind"] = "meltproof run"
         for name, number, units in (("spacing", spacing_um * MICRON, "m"), ("smoothing_length", spacing_um * MICRON, "m"),
-                                    ("scan_speed", 0.375, "m s-1"), ("laser_power", 175.0, "W"),
+                                    ("scan_speed", 0.375, "m s-1"), ("laser_power", 175.0, "W"), ("exposure", 1.04e-3, "s"),
                                     ("beam_radius", 40 * MICRON, "m"),
                                     ("additive_mass_fraction", additive_mass_fraction, "1"),
                                     ("reference_temperature", 1683.0, "K"), ("initial_temperature", 300.0, "K")):
             put(file, name, number, units)
         put(file, "domain/lower", position.min(axis=0), "m")
         put(file, "domain/upper", position.max(axis=0), "m")
-        put(file, "origin", origin)
         ever = np.zeros(len(x), bool)
         for step in range(6):
             beam_x = 60 + 50 * step
@@ -76,7 +77,9 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
             put(file, f"{group}/concentration", np.where(origin == 2, 0.8, 0.01) * (additive_mass_fraction > 0))
             put(file, f"{group}/liquid_fraction", (temperature > 1683).astype(float))
             put(file, f"{group}/identity", np.arange(len(x), dtype="i8"))
-        put(file, "melted", ever.astype("u1"))
+            put(file, f"{group}/origin", origin)
+            put(file, f"{group}/melted", ever.astype("u1"))
+            put(file, f"{group}/peak_temperature", np.where(ever, 2500.0, 900.0), "K")
     with (folder / "history.csv").open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["time [us]", "dt [us]", "pool_length [um]", "pool_width [um]", "pool_depth [um]",
@@ -87,8 +90,11 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
     case = f"track_{100 * additive_mass_fraction:.0f}wt" if powder_layer else "track_316L_175W_750"
     (folder / "result.json").write_text(json.dumps({
         "case": case, "spacing_um": spacing_um, "additive_wt_percent": 100 * additive_mass_fraction,
-        "pool_length_um": 250.0, "pool_length_u_um": 9.0, "pool_width_um": 120.0, "pool_depth_um": 60.0,
-        "any_liquid_length_um": 260.0, "energy_relative_error": 1e-12, "species_relative_error": 1e-15,
+        "pool_length_um": 250.0, "pool_width_um": 120.0, "pool_depth_um": 60.0,
+        "pool_length_sd_um": 9.0, "pool_width_sd_um": 4.0, "pool_depth_sd_um": 3.0, "any_liquid_length_um": 260.0,
+        "any_liquid_length_sd_um": 11.0, "pool_length_growth_um_per_ms": 20.0, "fusion_width_um": 118.0,
+        "fusion_depth_um": 58.0, "title": "synthetic", "end_time_us": 1200.0, "all_solid_at_end": True,
+        "provenance": PROVENANCE, "energy_relative_error": 1e-12, "species_relative_error": 1e-15,
         "particles": len(x), "steps": 1000, "wall_time_s": 12.0, "revision": "synthetic", "window": "a synthetic window"}))
 
 
@@ -111,18 +117,86 @@ def verification(path, profiles):
     profiles = Path(profiles)
     profiles.mkdir(parents=True, exist_ok=True)
     cases = []
-    for name, quantity in (("species_stripe_2um", "concentration"), ("species_stripe_20um", "concentration"),
-                           ("conduction_slab", "temperature"), ("stefan_0.1", "temperature"),
-                           ("stefan_0.5", "temperature"), ("stefan_1", "temperature")):
-        table = profiles / f"{name}.csv"
+    for name, kind in (("species_stripe_2um", "species_stripe"), ("species_stripe_20um", "species_stripe"),
+                       ("species_stripe_as_printed", "species_stripe"), ("conduction_slab", "conduction_slab"),
+                       ("conduction_contact", "conduction_contact"), ("stefan_0.1", "stefan"),
+                       ("stefan_0.5", "stefan"), ("stefan_1", "stefan")):
+        table = profiles / name / "profile.csv"
+        table.parent.mkdir(exist_ok=True)
         with table.open("w", newline="") as file:
             writer = csv.writer(file)
-            writer.writerow(["position [um]", f"exact [{'1' if 'species' in name else 'K'}]", "1 um", "2 um"])
-            for position in range(0, 101, 2):
-                exact = math.exp(-((position - 50) / 10) ** 2)
-                writer.writerow([position, exact, exact * 1.01, exact * 1.04 if position % 4 == 0 else ""])
-        cases.append({"name": name, "title": name.replace("_", " ").capitalize() + " (synthetic)",
-                      "reference": "synthetic", "quantity": quantity, "error": 0.005, "asked": 0.01, "order": 2.0,
+            writer.writerow(["spacing [um]", "position [um]", "value [1]", "exact [1]"])
+            for spacing in (1, 2, 4):
+                for position in range(0, 101, spacing):
+                    exact = math.exp(-((position - 50) / 10) ** 2)
+                    writer.writerow([spacing, position, exact * (1 + 0.005 * spacing ** 2), exact])
+        cases.append({"name": name, "kind": kind, "title": name.replace("_", " ") + " (synthetic)",
+                      "reference": "synthetic", "quantity": "synthetic", "error": 0.005, "asked": 0.01, "order": 2.0,
                       "pass": True, "spacings_um": [1, 2, 4], "errors": [0.005, 0.02, 0.08],
                       "profile_csv": str(table)})
-    Path(path).write_text(json.dumps({"cases": cases}))
+    Path(path).write_text(json.dumps({"cases": cases, "provenance": PROVENANCE}))
+
+
+def thermography(folder):
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "summary.json").write_text(json.dumps({
+        "recording": "recording.h5", "frames": 8, "width": 96, "height": 40, "frame_rate": 9762.5,
+        "quantity": "counts", "synthetic": "made up for a test", "melt_pool_found": True,
+        "level": {"value": 4000.0, "unit": "count", "kind": "synthetic", "how": "synthetic",
+                  "reference_temperature_K": 1683.0},
+        "pixel_size_um": {"x": 17.6, "y": 17.6, "u_x": 0.0, "u_y": 0.0},
+        "length_um": {"mean": 255.0, "sd": 8.0, "n": 6, "n_effective": 5.0, "u_mean": 4.0},
+        "depth_um": {"mean": 58.0, "sd": 5.0, "n": 6, "n_effective": 5.0, "u_mean": 3.0},
+        "frames_used": "synthetic", "shown_frame": 5, "provenance": PROVENANCE}))
+    with (folder / "frames.csv").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["frame [1]", "time [s]", "found [1]", "length [um]", "status [text]"])
+        for k in range(8):
+            writer.writerow([k, k / 9762.5, int(k > 1), 30 * k if k > 1 else "", "complete" if k > 1 else "no pool"])
+
+
+def linescan(path, direction):
+    position = [0.25 * k for k in range(81)]
+    raw = [1.0 if abs(x - 10) < 5 else 0.0 for x in position]
+    seen = [math.exp(-((x - 10) / 5) ** 2) for x in position]
+    Path(path).write_text(json.dumps({
+        "status": "pending", "line": {"direction": direction, "time_us": 1200.0, "spacing_um": 15.0},
+        "grain": {"centre_um": [200.0, 50.0, 10.0], "edge_distance_um": 9.0, "particles": 3, "rule": "synthetic"},
+        "interaction": {"voltage_kV": 30.0, "range_um": 2.45, "sigma_um": 1.04, "rule": "synthetic"},
+        "simulated": {"position_um": position, "concentration": raw, "concentration_seen": seen},
+        "measured": None, "metrics": None, "provenance": PROVENANCE}))
+
+
+def comparison(path):
+    row = {"name": "fig5_length_5wt", "title": "Synthetic row", "kind": "validation", "quantity": "length",
+           "window": "synthetic", "metric": "difference", "rule": "synthetic", "rule_reason": "synthetic",
+           "coverage": 2, "S": 255.0, "D": None, "E": None, "u_num": None, "u_input": None, "u_D": None,
+           "u_val": None, "unit": "um", "verdict": "pending", "declared": "pending", "waits_for": "reference",
+           "reason": "synthetic", "finding": "synthetic", "figure": "fig05_length", "source": None,
+           "lower": None, "upper": None, "details": {}, "failure": None, "limit": None}
+    width = dict(row, name="bare_316l_width", title="Synthetic width", S=118.0, D=127.7, E=-9.7, u_val=8.4, u_D=8.4,
+                 verdict="agrees", declared="agrees", waits_for=None, quantity="width")
+    depth = dict(width, name="bare_316l_depth", title="Synthetic depth", S=20.0, D=58.8, E=-38.8, u_val=17.6,
+                 u_D=17.6, verdict="differs", declared="differs", quantity="depth")
+    Path(path).write_text(json.dumps({
+        "profile": "smoke", "rows": [row, width, depth], "failures": [], "statistics": [], "provenance": PROVENANCE,
+        "summary": {"agrees": 1, "differs": 1, "pending": 1, "not computed": 0}}))
+
+
+def everything(root):
+    """A whole folder of results, as `make validate` would leave it; returns its places."""
+    root = Path(root)
+    work = root / "work"
+    for content, share in (("0wt", 0.0), ("1wt", 0.01), ("5wt", 0.05)):
+        (work / f"powder_{content}").mkdir(parents=True)
+        powder(work / f"powder_{content}" / "powder.h5", share)
+        run(work / f"track_{content}", share)
+        recording(work / f"track_{content}" / "recording.h5")
+        thermography(work / f"track_{content}" / "thermography")
+    run(work / "track_316L_175W_750", 0.0, powder_layer=False)
+    for direction in ("depth", "lateral"):
+        linescan(work / "track_5wt" / f"linescan_{direction}.json", direction)
+    verification(root / "verification.json", root / "profiles")
+    comparison(root / "validation.json")
+    return work

@@ -51,7 +51,7 @@ def plot_origin(axes, run, snapshot, normal, materials):
     """Plate, base powder and additive powder."""
     chosen, horizontal, vertical, first, second = slice_of(run, snapshot, normal)
     side = artifact.scalar(run, "spacing") / MICRON
-    origin = artifact.data(run, "origin")[chosen]
+    origin = artifact.data(run, f"{snapshot}/origin")[chosen]
     looks = [("plate", "#e6e6e6", ""), (f"{materials[0][0]} powder", "#9a9a9a", ""),
              (f"{materials[1][0]} powder", materials[1][1], "////")]
     for number, (name, colour, hatch) in enumerate(looks):

@@ -51,11 +51,9 @@ matplotlib.rcParams.update({
 })
 
 
-def pending_note(axes, text):
-    """Says inside a figure that a measurement is not there, where a reader would look for it."""
-    axes.text(0.98, 0.03, text, transform=axes.transAxes, ha="right", va="bottom", fontsize=7, style="italic",
-              bbox={"boxstyle": "round,pad=0.4", "facecolor": "#f4f4f4", "edgecolor": "#999999",
-                    "linestyle": "--", "linewidth": 0.6})
+# The frame of a note that says, inside a figure, that a measurement is not there.
+PENDING_BOX = {"boxstyle": "round,pad=0.4", "facecolor": "#f4f4f4", "edgecolor": "#999999", "linestyle": "--",
+               "linewidth": 0.6}
 
 
 def save(figure, output, title, caption):

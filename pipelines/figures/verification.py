@@ -1,11 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The two panels in which a verification case is shown: its profile, and its error against the spacing."""
 
+import textwrap
 from pathlib import Path
 
 import numpy as np
 import style
 from artifact import MissingArtifact, column, read_json, read_table, value
+
+# What the profile of each kind of case shows.
+QUANTITIES = {
+    "species_stripe": "concentration [1]",
+    "conduction_slab": "temperature minus mean [K]",
+    "conduction_contact": "temperature [K]",
+    "stefan": "temperature [K]",
+}
 
 
 def load_cases(path, wanted):
@@ -25,37 +34,25 @@ def profile_path(case, verification):
 
 
 def plot_profile(axes, case, verification):
-    """Exact solution as a line, each spacing as markers."""
+    """Exact solution as a line, each spacing as markers. The table holds all spacings, one under another."""
     path = profile_path(case, verification)
     table = read_table(path)
-    headers = list(table)
-    position = column(table, "position", path)
-    exact_header = next((h for h in headers if h.split(" [")[0] == "exact"), None)
-    if exact_header is None:
-        raise MissingArtifact(f"{path} has no column `exact`.")
-    exact = table[exact_header]
-    known = np.isfinite(position) & np.isfinite(exact)
-    order = np.argsort(position[known], kind="stable")
-    axes.plot(position[known][order], exact[known][order], color="black", linewidth=1.0, label="exact", zorder=3)
-    for index, header in enumerate(h for h in headers[1:] if h != exact_header):
-        look = style.SERIES[index % len(style.SERIES)]
-        present = np.isfinite(position) & np.isfinite(table[header])
-        every = max(1, int(present.sum()) // 40)
-        axes.plot(position[present][::every], table[header][present][::every], linestyle="none",
-                  marker=look["marker"], color=look["color"], fillstyle="none", markersize=3.5,
-                  markeredgewidth=0.8, label=f"SPH, {header.rsplit(' [', 1)[0]}", zorder=4)
-    unit = exact_header.split("[", 1)[1].rstrip("]") if "[" in exact_header else "1"
-    quantity = value(case, "quantity", verification)
-    axes.set_xlabel(next(h for h in headers if h.split(" [")[0] == "position"))
-    axes.set_ylabel(f"{axis_quantity(quantity)} [{unit}]")
-    axes.set_title(case["title"], fontsize=7)
-    axes.legend(loc="best")
-
-
-def axis_quantity(quantity):
-    """`L2 error of the concentration` is measured on the concentration: that is what the axis shows."""
-    words = quantity.split(" of the ")
-    return words[-1] if len(words) > 1 else quantity
+    spacing, position = column(table, "spacing", path), column(table, "position", path)
+    computed, exact = column(table, "value", path), column(table, "exact", path)
+    spacings = np.unique(spacing)
+    finest = spacing == spacings[0]
+    order = np.argsort(position[finest], kind="stable")
+    axes.plot(position[finest][order], exact[finest][order], color="black", linewidth=1.0, label="exact", zorder=3)
+    for look, size in zip(style.SERIES, spacings):
+        chosen = spacing == size
+        every = max(1, int(chosen.sum()) // 40)
+        axes.plot(position[chosen][::every], computed[chosen][::every], linestyle="none", marker=look["marker"],
+                  color=look["color"], fillstyle="none", markersize=3.2, markeredgewidth=0.7,
+                  label=f"SPH, {size:g} um", zorder=4)
+    axes.set_xlabel("position [um]")
+    axes.set_ylabel(QUANTITIES[case["kind"]])
+    axes.set_title(textwrap.fill(case["title"], 34), fontsize=7)
+    axes.legend(loc="best", fontsize=6)
 
 
 def plot_convergence(axes, cases):

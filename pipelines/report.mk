@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Figures and report from whatever artifacts the stages made.
+
+FIGURE_FOLDER := $(WORK)/figures
+LOOK := $(addprefix pipelines/figures/,style.py artifact.py)
+FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig04_powder_and_pool.svg \
+  fig05_length.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg fig10_bare_plate.svg)
+
+$(FIGURE_FOLDER)/fig01_diffusion.svg $(FIGURE_FOLDER)/fig02_conduction.svg: \
+    $(VERIFICATION) pipelines/figures/verification.py
+$(FIGURE_FOLDER)/fig04_powder_and_pool.svg: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 \
+    pipelines/figures/sections.py
+$(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED)
+$(FIGURE_FOLDER)/fig07_profiles.svg: $(LINESCANS)
+$(FIGURE_FOLDER)/fig08_history.svg: $(RESULTS)
+$(FIGURE_FOLDER)/fig09_camera.svg: $(WORK)/track_5wt/recording.h5 $(WORK)/track_5wt/thermography/summary.json
+$(FIGURE_FOLDER)/fig10_bare_plate.svg: $(WORK)/track_316L_175W_750/run.h5 \
+    $(WORK)/track_316L_175W_750/result.json $(COMPARISON) \
+    pipelines/figures/sections.py
+
+# What a figure reads is what stands before its script here; the scripts take it in this order.
+$(FIGURE_FOLDER)/%.svg: pipelines/figures/%.py $(LOOK) | packages
+	@$(STAGE) 'figure $*' $(PYTHON) $< $(filter reports/%,$^) --output $@
+
+# What the report says about the machine and the sources, kept as a file so that an unchanged state does
+# not make the report out of date.
+CIRCUMSTANCES := $(WORK)/circumstances.json
+$(CIRCUMSTANCES): always | packages
+	@mkdir -p $(@D)
+	@$(PYTHON) pipelines/report/circumstances.py --profile $(PROFILE) --spacing '$(SPACING)' --output $@
+
+REPORT := reports/validation.pdf
+REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)
+
+$(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(RESULTS) $(FILMED) $(CIRCUMSTANCES) \
+    $(wildcard reports/template/*) $(wildcard pipelines/report/*.py) pipelines/figures/artifact.py
+	@$(STAGE) 'report' $(PYTHON) pipelines/report/build_report.py --work $(WORK) --figures $(FIGURE_FOLDER) \
+	  --verification $(VERIFICATION) --comparison $(COMPARISON) --circumstances $(CIRCUMSTANCES) \
+	  --template reports/template --output reports/validation
+
+.PHONY: figures report validate readme-picture
+figures: $(FIGURES)
+	@echo 'The figures are in $(FIGURE_FOLDER)/.'
+
+report: $(REPORT)
+	@echo 'The report is $(REPORT), and reports/validation.html for a browser.'
+
+validate: $(REPORT)
+	@if [ "$$(stat -c %y $(REPORT))" = '$(REPORT_BEFORE)' ]; then \
+	  echo 'nothing to do: $(REPORT) is up to date'; fi
+	@$(PYTHON) pipelines/report/results_table.py --verification $(VERIFICATION) --comparison $(COMPARISON) \
+	  --report $(REPORT)
+
+# The picture at the top of README.md: fig. 4 of the present results.
+readme-picture: docs/images/powder_and_pool.svg
+docs/images/powder_and_pool.svg: $(FIGURE_FOLDER)/fig04_powder_and_pool.svg
+	@mkdir -p $(@D)
+	@cp $< $@
+	@echo 'The picture of README.md is $@; commit it if you want to publish it.'

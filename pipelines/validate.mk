@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# From the case files to the table of comparisons: powder, solve, camera, thermography, line scans, compare.
+
+# How fine each profile is. The case files hold what the paper states; only the spacing is set here.
+SPACING_smoke := 14 um
+SPACING_desk := 10 um
+SPACING_paper := 2 um
+SPACING := $(SPACING_$(PROFILE))
+
+POWDER_TRACKS := 0wt 1wt 5wt
+BARE_TRACKS := 316L_175W_750
+TRACKS := $(POWDER_TRACKS) $(BARE_TRACKS)
+MATERIALS := $(wildcard data/materials/*.toml)
+
+RESULTS := $(TRACKS:%=$(WORK)/track_%/result.json)
+FILMED := $(POWDER_TRACKS:%=$(WORK)/track_%/thermography/summary.json)
+LINESCANS := $(WORK)/track_5wt/linescan_depth.json $(WORK)/track_5wt/linescan_lateral.json
+COMPARISON := reports/validation.json
+
+# Results of another profile must not pass for those of this one: a stamp that changes with the profile.
+CHOSEN := reports/work/profile
+.PHONY: always
+always:
+$(CHOSEN): always
+	@mkdir -p $(@D); [ "$$(cat $@ 2>/dev/null)" = '$(PROFILE)' ] || echo '$(PROFILE)' > $@
+
+$(WORK)/powder_%/powder.h5: solver/cases/powder_%.toml $(BIN)/meltproof-powder
+	@mkdir -p $(@D)
+	@$(STAGE) 'powder bed, $*' $(BIN)/meltproof-powder $< --output $@
+
+define solve
+$(WORK)/track_$(1)/run.h5 $(WORK)/track_$(1)/history.csv $(WORK)/track_$(1)/result.json &: \
+    solver/cases/track_$(1).toml $(2) $(MATERIALS) $(BIN)/meltproof-solve
+	@mkdir -p $(WORK)/track_$(1)
+	@$(STAGE) 'track $(1), spacing $(SPACING)' $(BIN)/meltproof-solve $$< --output $(WORK)/track_$(1) \
+	  --threads $(THREADS) --set spacing="$(SPACING)" $(2:%=--powder %)
+endef
+$(foreach track,$(POWDER_TRACKS),$(eval $(call solve,$(track),$(WORK)/powder_$(track)/powder.h5)))
+$(foreach track,$(BARE_TRACKS),$(eval $(call solve,$(track),)))
+
+# Like for like: the simulated pool is filmed, and measured by the program that measures real recordings.
+$(WORK)/track_%/recording.h5: $(WORK)/track_%/run.h5 $(BIN)/meltproof-camera
+	@$(STAGE) 'virtual camera, $*' $(BIN)/meltproof-camera $< --output $@
+
+$(WORK)/track_%/thermography/summary.json: $(WORK)/track_%/recording.h5 $(BIN)/meltproof-thermography
+	@mkdir -p $(@D)
+	@$(STAGE) 'thermography, $*' $(BIN)/meltproof-thermography $< --output $(@D) --scan-speed '0.375 m/s'
+
+$(WORK)/track_%/linescan_depth.json: $(WORK)/track_%/run.h5 $(BIN)/meltproof-linescan
+	@$(STAGE) 'line scan in depth, $*' $(BIN)/meltproof-linescan $< --grain depth --output $@
+
+$(WORK)/track_%/linescan_lateral.json: $(WORK)/track_%/run.h5 $(BIN)/meltproof-linescan
+	@$(STAGE) 'line scan across, $*' $(BIN)/meltproof-linescan $< --grain lateral --output $@
+
+# Status 1 says that a row is not as its table declares. The table is written all the same, so that the
+# report shows it; the job itself then fails at its end (results_table.py).
+$(COMPARISON): $(CHOSEN) $(VERIFICATION) $(RESULTS) $(FILMED) $(LINESCANS) validation/comparisons.toml \
+    $(wildcard data/experiments/*/*) $(BIN)/meltproof-compare
+	@rm -f $@
+	@$(STAGE) 'comparisons' pipelines/written_or_fail.sh $@ $(BIN)/meltproof-compare \
+	  --table validation/comparisons.toml --results reports/work --profile $(PROFILE) --output $@
