@@ -56,6 +56,9 @@ LineRequest understand(const Typed& typed) {
     request.end = point("--end", typed.end);
   }
   request.length = quantity("--length", typed.length, "m");
+  if (!(request.length > 0)) {
+    throw InputError(fmt::format("--length: {} is no length of a line.", typed.length));
+  }
   request.step = quantity("--step", typed.step, "m");
   request.voltage = quantity("--voltage", typed.voltage, "kV");
   request.bounds.shift = quantity("--shift", typed.shift, "m");
@@ -64,6 +67,9 @@ LineRequest understand(const Typed& typed) {
   }
   if (!typed.sigma.empty()) {
     request.sigma = quantity("--interaction", typed.sigma, "m");
+    if (!(*request.sigma >= 0)) {
+      throw InputError(fmt::format("--interaction: {} is less than nothing.", typed.sigma));
+    }
   }
   request.measured = typed.measured;
   request.from_silicon = typed.element == "Si";
