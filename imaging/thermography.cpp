@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <opencv2/core/version.hpp>
 
 #include "base/atomic_file.hpp"
 #include "base/program.hpp"
@@ -28,7 +29,8 @@ const std::vector<std::pair<std::string, std::string>> shared_options = {
     {"calibration", "calibration.json of meltproof-calibrate, for lengths in um"},
     {"level", "signal in counts at which the pool ends"},
     {"reference-temperature", "temperature at which the pool ends, as \"1683 K\""},
-    {"emissivity", "emissivity of the surface in the camera's band"},
+    {"emissivity", "emissivity of solid metal in the camera's band"},
+    {"emissivity-liquid", "emissivity of liquid metal, where it is less"},
     {"transmission", "transmission of the windows, as 0.313 or \"31.3 %\""},
     {"frame-rate", "frames per second, as \"9762.5 Hz\", for files that hold none"},
     {"kelvin-per-count", "as \"0.04 K\", for exports with a linear temperature scale"},
@@ -86,6 +88,7 @@ int main(int argc, char** argv) {
 
   return program.run(argc, argv, [&] {
     Provenance provenance = begin_provenance(argc, argv);
+    provenance.libraries["OpenCV"] = CV_VERSION;
     Settings settings;
     Input input = declare(settings);
     read_settings(input, settings_path, given);

@@ -71,6 +71,27 @@ void measure(FrameResult& result, Region region, ScanDirection direction, const 
   result.region = std::move(region);
 }
 
+/// The pool of a frame at a level, with the front marked first where the level has a step.
+struct Search {
+  Search(const RecordingHeader& header, const Level& wanted, bool along_scan_x)
+      : level(wanted),
+        along_x(along_scan_x),
+        width(header.width),
+        height(header.height),
+        finder(header.width, header.height, wanted.interpolation) {}
+  std::optional<Region> pool(const Frame& frame) {
+    if (!level.step) return finder.largest(frame.values, *level.value);
+    front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
+    return finder.largest(marked, *level.value);
+  }
+  const Level& level;
+  bool along_x;
+  std::size_t width, height;
+  RegionFinder finder;
+  std::vector<float> marked;
+  std::size_t front_lines = 0;
+};
+
 void summarise_frames(Analysis& analysis, ScanDirection direction) {
   const auto complete = std::count_if(analysis.frames.begin(), analysis.frames.end(),
                                       [](const FrameResult& f) { return f.complete; });
@@ -113,10 +134,11 @@ ScanDirection parse_scan_direction(const std::string& text) {
       "The scan direction is \"{}\"; expected +x, -x, +y or -y, with y downwards.", text));
 }
 
-std::optional<Region> pool_in(const Recording& recording, const Level& level, const Frame& frame) {
-  if (!level.value) return std::nullopt;
-  RegionFinder finder(recording.header().width, recording.header().height, level.interpolation);
-  auto region = finder.largest(frame.values, *level.value);
+std::optional<Region> pool_in(const Recording& recording, const Analysis& analysis,
+                              const Frame& frame) {
+  if (!analysis.level.value) return std::nullopt;
+  Search search(recording.header(), analysis.level, analysis.along_x);
+  auto region = search.pool(frame);
   if (!region || region->pixels < smallest_pool) return std::nullopt;
   return region;
 }
@@ -128,7 +150,7 @@ Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDi
   analysis.level = find_level(recording, request);
   analysis.unit = pixel.known() ? std::string("m") : std::string("px");
   analysis.along_x = direction == ScanDirection::right || direction == ScanDirection::left;
-  RegionFinder finder(header.width, header.height, analysis.level.interpolation);
+  Search search(header, analysis.level, analysis.along_x);
   Frame frame;
   std::size_t brightest = 0, largest = 0;
   Progress progress("extract", static_cast<double>(header.frames));
@@ -137,10 +159,13 @@ Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDi
     recording.read(i, frame);
     auto result = describe(frame);
     if (analysis.level.value && result.values.high >= *analysis.level.value) {
-      auto region = finder.largest(frame.values, *analysis.level.value);
+      auto region = search.pool(frame);
+      result.front_lines = search.front_lines;
       if (region) largest = std::max(largest, region->pixels);
-      if (region && region->pixels >= smallest_pool)
+      if (region && region->pixels >= smallest_pool) {
         measure(result, std::move(*region), direction, pixel);
+        result.complete = result.complete && !(analysis.level.step && result.front_lines == 0);
+      }
     }
     analysis.found = analysis.found || result.found;
     analysis.frames.push_back(std::move(result));

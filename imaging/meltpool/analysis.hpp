@@ -37,12 +37,14 @@ struct FrameResult {
   std::optional<Range> counts;  ///< where the values were computed from counts
   std::size_t saturated = 0, under_range = 0, dead = 0;  ///< pixels
   bool found = false;
-  bool complete = false;  ///< found, and it does not touch the image's border
+  bool complete = false;  ///< found whole: not at the image's border, and with its front if the
+                          ///< level has a step
   double onset = 0,
          end = 0;  ///< leading edge and tail along the scan axis, from the left or upper border
   double length = 0, depth = 0;  ///< along and across the scan axis
   double area = 0;               ///< unit squared
   double orientation = 0;        ///< rad, long axis from x towards y (downwards)
+  std::size_t front_lines = 0;   ///< lines of pixels in which the front itself was seen
   Region region;                 ///< px, without its edge
 };
 
@@ -67,6 +69,7 @@ Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDi
                  const PixelSize& pixel);
 
 /// The pool of one frame with its edge, for drawing; nothing if the frame has none.
-std::optional<Region> pool_in(const Recording& recording, const Level& level, const Frame& frame);
+std::optional<Region> pool_in(const Recording& recording, const Analysis& analysis,
+                              const Frame& frame);
 
 }  // namespace meltproof::imaging

@@ -81,9 +81,11 @@ TEST(Samples, TheMeltPoolOfNistHasThePublishedPixelsAtGivenLevels) {
   const auto recording = open_recording(samples / "meltpool_sample_img.bmp");
   const std::pair<double, std::size_t> published[] = {{40, 214}, {80, 139}, {128, 100}, {200, 66}};
   for (const auto& [level, pixels] : published) {
-    const auto a = analysed(
-        recording,
-        {.level = level, .reference_temperature = {}, .emissivity = {}, .transmission = {}});
+    const auto a = analysed(recording, {.level = level,
+                                        .reference_temperature = {},
+                                        .emissivity = {},
+                                        .emissivity_liquid = {},
+                                        .transmission = {}});
     ASSERT_TRUE(a.found);
     EXPECT_EQ(a.frames[0].region.pixels, pixels);
     // A count of pixels scatters around the area by about the root of the number on the edge.
@@ -174,8 +176,11 @@ Recording passing_pool(double dark = 900) {
 
 TEST(Analysis, MeasuresAPassingPoolAtTheReferenceTemperature) {
   const PixelSize pixel{pixel_size, pixel_size, 0, 0};
-  const LevelRequest request{
-      .level = {}, .reference_temperature = 1673.15, .emissivity = {}, .transmission = {}};
+  const LevelRequest request{.level = {},
+                             .reference_temperature = 1673.15,
+                             .emissivity = {},
+                             .emissivity_liquid = {},
+                             .transmission = {}};
   const auto a = analyse(passing_pool(), request, ScanDirection::right, pixel);
   ASSERT_TRUE(a.found);
   EXPECT_EQ(a.level.kind, LevelKind::radiometry);

@@ -69,6 +69,9 @@ RegionFinder::RegionFinder(std::size_t width, std::size_t height, Interpolation 
 
 void RegionFinder::mend(std::span<const float> values, float level) {
   values_ = values;
+  bool any = false;  // by a loop without branches, since almost no frame has any
+  for (const float v : values) any |= v != v;
+  if (!any) return;
   bool copied = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isnan(values[i])) continue;
@@ -252,12 +255,18 @@ std::optional<Region> RegionFinder::largest(std::span<const float> values, doubl
   std::fill(labels_.begin(), labels_.end(), 0);
   largest_.clear();
   std::int32_t label = 0, best = 0;
-  for (std::size_t i = 0; i < values_.size(); ++i) {
-    if (!(values_[i] >= threshold) || labels_[i] != 0) continue;
-    flood(i, ++label, threshold);
-    if (pixels_.size() > largest_.size()) {
-      largest_ = pixels_;
-      best = label;
+  const auto width = static_cast<std::size_t>(width_);
+  for (std::size_t row = 0; row < values_.size(); row += width) {
+    bool any = false;  // most rows have nothing above the level, which this loop sees at once
+    for (const float v : values_.subspan(row, width)) any |= v >= threshold;
+    if (!any) continue;
+    for (std::size_t i = row; i < row + width; ++i) {
+      if (!(values_[i] >= threshold) || labels_[i] != 0) continue;
+      flood(i, ++label, threshold);
+      if (pixels_.size() > largest_.size()) {
+        largest_ = pixels_;
+        best = label;
+      }
     }
   }
   if (largest_.empty()) return std::nullopt;

@@ -70,7 +70,7 @@ Level at_reference_temperature(const RecordingHeader& header, const LevelRequest
                                  ? "given"
                                  : "the liquidus of 316L, taken because none was given";
   if (header.quantity == SignalQuantity::temperature) {
-    if (request.emissivity || request.transmission)
+    if (request.emissivity || request.emissivity_liquid || request.transmission)
       throw InputError(
           fmt::format("{}: an emissivity or a transmission was given, but the file holds "
                       "temperatures, in which the "
@@ -86,6 +86,8 @@ Level at_reference_temperature(const RecordingHeader& header, const LevelRequest
   Radiometry r = *header.radiometry;
   if (request.emissivity) r.emissivity = *request.emissivity;
   if (request.transmission) r.transmission = *request.transmission;
+  const double liquid =
+      request.emissivity_liquid.value_or(header.emissivity_liquid.value_or(r.emissivity));
   level.kind = LevelKind::radiometry;
   level.value = signal(r, level.reference_temperature);
   level.interpolation = {.logarithmic = true, .dark = signal(r, 0)};
@@ -95,6 +97,19 @@ Level at_reference_temperature(const RecordingHeader& header, const LevelRequest
       "between {:.3g} and {:.3g} um; it is not independent of the emissivity",
       level.reference_temperature, origin, r.emissivity, r.transmission, r.band_lower * 1e6,
       r.band_upper * 1e6);
+  if (liquid < r.emissivity) {
+    level.step = EmissivityStep{level.interpolation.dark,
+                                signal(r, level.reference_temperature, liquid), *level.value};
+    level.value = level.step->level();
+    level.how = fmt::format(
+        "the solidification front is where the signal steps from that of liquid to that of solid "
+        "metal at {:.6g} K ({}), "
+        "emissivities {:.3g} and {:.3g}, transmission {:.4g}, {:.3g} to {:.3g} um; where no step "
+        "is resolved, the signal "
+        "halfway between; it is not independent of the emissivity",
+        level.reference_temperature, origin, liquid, r.emissivity, r.transmission,
+        r.band_lower * 1e6, r.band_upper * 1e6);
+  }
   if (*level.value >= header.saturation) {
     level.reason = fmt::format(
         "The signal at {:.6g} K would be {:.6g} {}, which is beyond saturation ({:.6g}): the "
@@ -239,7 +254,8 @@ Level find_level(const Recording& recording, const LevelRequest& request) {
   }
   if (header.quantity == SignalQuantity::temperature || header.radiometry)
     return at_reference_temperature(header, request);
-  if (request.reference_temperature || request.emissivity || request.transmission)
+  if (request.reference_temperature || request.emissivity || request.emissivity_liquid ||
+      request.transmission)
     throw InputError(
         fmt::format("{}: a temperature, emissivity or transmission was given, but the file holds "
                     "counts without the camera's band "

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "imaging/meltpool/contour.hpp"
+#include "imaging/meltpool/front.hpp"
 #include "imaging/recording/recording.hpp"
 
 namespace meltproof::imaging {
@@ -14,7 +15,8 @@ namespace meltproof::imaging {
 struct LevelRequest {
   std::optional<double> level;                  ///< in the recording's own unit
   std::optional<double> reference_temperature;  ///< K
-  std::optional<double> emissivity;             ///< of the surface, instead of the recording's
+  std::optional<double> emissivity;             ///< of solid metal, instead of the recording's
+  std::optional<double> emissivity_liquid;      ///< of liquid metal, instead of the recording's
   std::optional<double> transmission;           ///< of the windows, instead of the recording's
 };
 
@@ -40,6 +42,8 @@ struct Level {
   std::string reason;  ///< why there is no value, one sentence
   double reference_temperature = 0;  ///< K; 0 where none was used
   Interpolation interpolation;
+  std::optional<EmissivityStep>
+      step;  ///< where the emissivities of both phases are known and differ
 };
 
 /// A region smaller than this has no shape to measure: the smallest square of pixels.

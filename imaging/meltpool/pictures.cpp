@@ -144,7 +144,9 @@ std::vector<std::string> caption(const Recording& recording, const Analysis& a) 
   lines.push_back(fmt::format("this frame: length {:.4g} {}, {} {:.4g} {}, area {:.4g} {}^2{}",
                               f.length * scale, unit, a.along_x ? "depth" : "extent across",
                               f.depth * scale, unit, f.area * scale * scale, unit,
-                              f.complete ? "" : "  (touches the border)"));
+                              f.complete             ? ""
+                              : f.region.at_border() ? "  (touches the border)"
+                                                     : "  (front not seen)"));
   if (a.length.n > 1)
     lines.push_back(fmt::format("all {} frames: length {:.4g} {}, standard deviation {:.3g} {}",
                                 a.length.n, a.length.mean * scale, unit, a.length.deviation * scale,
@@ -164,7 +166,7 @@ std::string annotated_picture(const Recording& recording, const Analysis& a,
   // Whole factors keep the pixels square-edged; a frame larger than the page is shrunk.
   const double zoom = largest <= 900 ? std::max(1.0, std::floor(900 / largest)) : 900 / largest;
   cv::Mat picture = coloured(frame.values, h.width, f.values.low, f.values.high, zoom);
-  const auto region = pool_in(recording, a.level, frame);
+  const auto region = pool_in(recording, a, frame);
   if (region) draw_edge(picture, *region, zoom, 2);
 
   constexpr int margin = 24, bar_width = 18, bar_room = 110, line_height = 22, top = 40;
@@ -237,7 +239,7 @@ std::string contact_sheet(const Recording& recording, const Analysis& a) {
     const std::size_t index = shown > 1 ? i * (h.frames - 1) / (shown - 1) : 0;
     recording.read(index, frame);
     cv::Mat tile = coloured(frame.values, h.width, low, high, zoom);
-    if (const auto region = pool_in(recording, a.level, frame)) draw_edge(tile, *region, zoom, 1);
+    if (const auto region = pool_in(recording, a, frame)) draw_edge(tile, *region, zoom, 1);
     const int x =
         gap + static_cast<int>(i) % columns * (static_cast<int>(std::ceil(tile_width)) + gap);
     const int y = head + static_cast<int>(i) / columns * (tile_height + label + gap);

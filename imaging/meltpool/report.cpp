@@ -43,6 +43,12 @@ json length_budget(const Series& s, const Analysis& a, double pixel, double u_pi
             {"pixel size", calibration}}}};
 }
 
+std::string status_of(const FrameResult& f) {
+  if (!f.found) return "no pool";
+  if (f.region.at_border()) return "at the border";
+  return f.complete ? "complete" : "front not seen";
+}
+
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.7g}", value) : std::string();
 }
@@ -98,9 +104,10 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
   j["area_" + unit + "2"] = {{"mean", a.area.mean * scale_of(a) * scale_of(a)},
                              {"sd", a.area.deviation * scale_of(a) * scale_of(a)},
                              {"n", a.area.n}};
-  j["frames_used"] = a.only_incomplete ? "all with a pool: in every one it touches the border of "
-                                         "the image, so lengths are lower bounds"
-                                       : "those whose pool does not touch the border of the image";
+  j["frames_used"] = a.only_incomplete
+                         ? "all with a pool: in none is it whole (see status in frames.csv), "
+                           "so lengths are lower bounds"
+                         : "those whose pool is whole (status complete in frames.csv)";
   constexpr std::size_t enough_for_a_trend = 4;
   if (a.length.n >= enough_for_a_trend)
     j["steady"] = {
@@ -144,8 +151,7 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{}\n",
                            f.onset * s, f.end * s, f.length * s, f.depth * s, f.area * s * s,
                            f.region.centroid.x, f.region.centroid.y,
-                           f.orientation * 180 / std::numbers::pi, f.region.pixels,
-                           f.complete ? "complete" : "at the border");
+                           f.orientation * 180 / std::numbers::pi, f.region.pixels, status_of(f));
     else
       table += ",,,,,,,,,no pool\n";
   }
@@ -178,8 +184,8 @@ std::string spoken(const Recording& recording, const Analysis& a) {
   text += fmt::format(".\nLevel {:.6g} {}: {}.\n", *a.level.value, h.unit, a.level.how);
   if (a.only_incomplete)
     text +=
-        "In every frame the pool touches the border of the image, so its length is a lower "
-        "bound.\n";
+        "In no frame is the pool whole: it touches the border of the image or its front was not "
+        "seen, so the length is a lower bound.\n";
   if (a.unit == "px") text += "Lengths are in pixels: give --calibration for micrometres.\n";
   return text;
 }

@@ -30,9 +30,15 @@ Input declare(Settings& s) {
            .maximum = 5000})
       .quantity(s.emissivity, {.name = "emissivity",
                                .unit = "1",
-                               .about = "emissivity of the surface in the camera's band",
+                               .about = "emissivity of solid metal in the camera's band",
                                .minimum = 0.01,
                                .maximum = 1})
+      .quantity(s.emissivity_liquid, {.name = "emissivity_liquid",
+                                      .unit = "1",
+                                      .about = "emissivity of liquid metal in the camera's band, "
+                                               "where it is less than that of solid metal",
+                                      .minimum = 0.01,
+                                      .maximum = 1})
       .quantity(s.transmission,
                 {.name = "transmission",
                  .unit = "1",

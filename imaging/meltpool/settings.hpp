@@ -12,14 +12,16 @@
 namespace meltproof::imaging {
 
 struct Settings {
-  std::optional<double> level, reference_temperature, emissivity, transmission;
+  std::optional<double> level, reference_temperature, emissivity, emissivity_liquid, transmission;
   std::optional<double> frame_rate;        ///< Hz, for files that do not hold one
   std::optional<double> kelvin_per_count;  ///< K, for files whose counts are a linear temperature
   double zero_count_temperature = 0;       ///< K at count 0 of that scale
   std::optional<double> scan_speed;        ///< m/s, to check the measured one
   std::string scan_direction = "+x";
   std::filesystem::path calibration;
-  LevelRequest request() const { return {level, reference_temperature, emissivity, transmission}; }
+  LevelRequest request() const {
+    return {level, reference_temperature, emissivity, emissivity_liquid, transmission};
+  }
 };
 
 /// The declaration of the settings, bound to `settings`.

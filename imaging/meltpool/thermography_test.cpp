@@ -149,6 +149,36 @@ TEST_F(Thermography, KeepsTheWholeFramesOfATruncatedRecording) {
                  "before its first frame is whole");
 }
 
+TEST_F(Thermography, RecoversTheLengthOfAnAnalyticPoolFilmedByTheVirtualCamera) {
+  // Round trip on a synthetic pool of exactly known size: 261.80 um long, 65.87 um deep, 0.375 m/s.
+  const fs::path pool = folder_ / "pool.h5";
+  ASSERT_EQ(
+      std::system(
+          fmt::format("{} --rosenthal --seed 1 --output {} -q", CAMERA, pool.string()).c_str()),
+      0);
+  const std::string at =
+      pool.string() + " --reference-temperature '1673.15 K' --scan-speed '0.375 m/s'";
+  EXPECT_EQ(run(at), 0) << text_;
+  const auto s = summary();
+  EXPECT_EQ(s["width"], 96);
+  EXPECT_EQ(s["height"], 40);
+  EXPECT_EQ(s["frame_rate"], 9762.5);
+  EXPECT_FALSE(s["synthetic"].is_null());
+  EXPECT_NE(text_.find("SYNTHETIC"), std::string::npos);
+  // The plate's surface cuts through a row of pixels, and a row further down the pool is 3 %
+  // shorter.
+  EXPECT_NEAR(s["length_um"]["mean"].get<double>(), 261.80, 0.035 * 261.80);
+  EXPECT_LT(s["length_um"]["sd"].get<double>(), 2);
+  EXPECT_GE(s["length_um"]["n"].get<int>(), 30);
+  EXPECT_NEAR(s["speed_m_s"].get<double>(), 0.375, 0.001 * 0.375);
+  EXPECT_TRUE(s["steady"]["steady"].get<bool>());
+  // One emissivity for both phases misses the front by far: the reason for looking for its step.
+  EXPECT_EQ(run(at + " --emissivity-liquid 0.3"), 0) << text_;
+  EXPECT_LT(summary()["length_um"]["mean"].get<double>(), 0.8 * 261.80);
+  EXPECT_EQ(run(at + " --emissivity 0.2"), 0) << text_;
+  EXPECT_GT(summary()["length_um"]["mean"].get<double>(), 1.08 * 261.80);
+}
+
 TEST_F(Thermography, RefusesInOneSentenceAndLeavesNothingBehind) {
   expect_refusal(file("notes.ptw", "Monday: cleaned the lens.\n").string(), "text");
   expect_refusal((folder_ / "missing.ptw").string(), "no such file");

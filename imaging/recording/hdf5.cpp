@@ -48,6 +48,8 @@ Recording open_hdf5(const std::filesystem::path& path) {
     r.window_emission = optional("radiometry/window_emission", 0) != 0;
     r.integration_time = header.integration_time;
     header.radiometry = r;
+    if (file->has("radiometry/emissivity_liquid"))
+      header.emissivity_liquid = file->scalar("radiometry/emissivity_liquid");
   }
   std::vector<double> times;
   if (file->has("time")) times = file->read<double>("time").values;

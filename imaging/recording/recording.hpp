@@ -52,6 +52,7 @@ struct RecordingHeader {
   double saturation = std::numeric_limits<double>::infinity();
   double under_range = -std::numeric_limits<double>::infinity();
   std::optional<Radiometry> radiometry;       ///< band, optics and gain, where the file holds them
+  std::optional<double> emissivity_liquid;    ///< where it differs from radiometry->emissivity
   std::map<std::string, double> calibration;  ///< other constants of the file, by name with unit
   std::string synthetic;           ///< how a synthetic recording was made; empty: measured
   std::vector<std::string> notes;  ///< sentences that a user should read
