@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds the validation report from artifacts: one self-contained HTML page and the same as PDF.
+
+Every number comes from an artifact or is computed from one here; equal artifacts give equal bytes.
+"""
+
+import argparse
+import base64
+import json
+import os
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "figures"))
+from artifact import MissingArtifact, existing, open_artifact, read_json, text, value  # noqa: E402
+from errata_numbers import numbers  # noqa: E402
+
+
+def fixed(number, digits):
+    return "–" if number is None else f"{number:.{digits}f}"
+
+
+def scientific(number):
+    return "–" if number is None else f"{number:.1e}"
+
+
+def short(number):
+    return "–" if number is None else f"{number:.3g}"
+
+
+def percent_number(share):
+    return f"{100 * share:.2g}"
+
+
+def duration(seconds):
+    if seconds is None:
+        return "–"
+    if seconds < 120:
+        return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s"
+    return f"{seconds / 60:.1f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
+
+
+def read_figures(folder):
+    """Every figure of the folder with its words, in the order of their names."""
+    figures = []
+    for path in sorted(Path(folder).glob("*.svg")):
+        words = read_json(path.with_suffix(".json"))
+        figures.append({"name": path.stem, "path": path, "title": words["title"], "caption": words["caption"]})
+    if not figures:
+        raise MissingArtifact(f"{folder} holds no figure; `make figures` makes them.")
+    return figures
+
+
+def inline_svg(figure):
+    """The graphic as an element of the page. Names inside it get the figure's own prefix, because several
+    graphics of one page must not share them."""
+    svg = figure["path"].read_text(encoding="utf-8")
+    svg = svg[svg.index("<svg"):]
+    prefix = figure["name"].split("_")[0] + "-"
+    svg = re.sub(r'\bid="', f'id="{prefix}', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}', svg)
+    svg = svg.replace("url(#", f"url(#{prefix}")
+    label = Markup.escape(figure["title"])
+    return Markup(svg.replace("<svg", f'<svg role="img" aria-label="{label}"', 1))
+
+
+def embedded_svg(figure):
+    """The graphic as an image inside the page: WeasyPrint draws glyphs only of graphics in files."""
+    data = base64.b64encode(figure["path"].read_bytes()).decode()
+    return Markup(f'<img alt="{Markup.escape(figure["title"])}" src="data:image/svg+xml;base64,{data}">')
+
+
+def read_tracks(work):
+    """result.json of every track, with the length that the thermography program saw."""
+    tracks = []
+    for path in sorted(Path(work).glob("track_*/result.json")):
+        track = read_json(path)
+        track["path"] = path
+        film = path.parent / "thermography" / "summary.json"
+        track["filmed"] = read_json(film).get("length_um") if film.is_file() else None
+        for key in ("title", "window", "pool_length_um", "energy_relative_error", "species_relative_error"):
+            value(track, key, path)
+        tracks.append(track)
+    if not tracks:
+        raise MissingArtifact(f"{work} holds no track_*/result.json; `make validate` makes them.")
+    return tracks
+
+
+def provenance_of_hdf5(path):
+    """The provenance of an artifact as a dictionary, whichever way HDF5 holds it: attributes or data sets."""
+    with open_artifact(path, "") as file:
+        if "provenance" not in file:
+            return {}
+        group = file["provenance"]
+        found = {name: attribute for name, attribute in group.attrs.items()}
+        for name in getattr(group, "keys", list)():
+            found[name] = group[name][()]
+        if "json" in found:
+            return json.loads(text(found["json"]))
+        return {name: text(content) if isinstance(content, (bytes, str)) else content
+                for name, content in found.items()}
+
+
+def collect_provenance(work, verification, comparison):
+    """One line per JSON result, and every input file with its checksum."""
+    files = [Path(verification), *sorted(Path(work).glob("track_*/result.json")),
+             *sorted(Path(work).glob("track_*/thermography/summary.json")),
+             *sorted(Path(work).glob("track_*/linescan_*.json")), Path(comparison)]
+    artifacts, inputs, libraries = [], {}, {}
+    for path in files:
+        record = read_json(path)
+        made = record.get("provenance", {})
+        wall_time = record.get("wall_time_s", made.get("wall_time_s"))
+        artifacts.append({"path": path.as_posix(), "program": made.get("program", "–"),
+                          "revision": made.get("revision", "–"), "particles": count(record.get("particles")),
+                          "steps": count(record.get("steps")), "threads": made.get("threads", "–"),
+                          "wall_time": duration(wall_time)})
+        libraries.update(made.get("libraries", {}))
+        for entry in made.get("inputs", []):
+            inputs[entry["path"]] = entry["sha256"]
+    for path in sorted(Path(work).glob("powder_*/powder.h5")):
+        made = provenance_of_hdf5(path)
+        if made:
+            artifacts.insert(1, {"path": path.as_posix(), "program": made.get("program", "–"),
+                                 "revision": made.get("revision", "–"), "particles": "", "steps": "",
+                                 "threads": made.get("threads", "–"),
+                                 "wall_time": duration(float(made["wall_time_s"])) if "wall_time_s" in made else "–"})
+    return artifacts, [{"path": path, "sha256": sum_} for path, sum_ in sorted(inputs.items())], libraries
+
+
+def count(number):
+    """A number of particles or steps; a list of them as its largest."""
+    if isinstance(number, list):
+        number = max(number)
+    return "" if number is None else f"{number:,}".replace(",", " ")
+
+
+def sort_rows(rows):
+    """The comparisons with measurements by their verdict; the pending ones by what they wait for."""
+    with_measurement = [row for row in rows if row["kind"] != "verification"]
+    chosen = {"agrees": [], "differs": [], "uncomputed": []}
+    for row in with_measurement:
+        if row["verdict"] != "pending":
+            chosen.get(row["verdict"], chosen["uncomputed"]).append(row)
+    waiting = [row for row in with_measurement if row["verdict"] == "pending"]
+    reasons = list(dict.fromkeys(row["reason"] for row in waiting))
+    pending = [(reason, [row for row in waiting if row["reason"] == reason]) for reason in reasons]
+    return with_measurement, chosen, pending
+
+
+def fill_errata(template):
+    with existing(Path(template) / "errata.toml").open("rb") as file:
+        rows = tomllib.load(file)["row"]
+    known = numbers(HERE.parent.parent)
+    return [{"later": False, **row, "finding": row["finding"].format(**known), "suite": row["suite"].format(**known)} for row in rows]
+
+
+def report_facts(given):
+    """Everything that the template names, but for the pictures."""
+    cases = value(read_json(given.verification), "cases", given.verification)
+    for case in cases:
+        case["pairs"] = [(f"{s:g}", e) for s, e in zip(case["spacings_um"], case["errors"])]
+    comparison = read_json(given.comparison)
+    rows = value(comparison, "rows", given.comparison)
+    comparisons, measured, pending = sort_rows(rows)
+    tracks = read_tracks(given.work)
+    artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.comparison)
+    facts = read_json(given.circumstances)
+    revisions = sorted({made["revision"] for made in artifacts})
+    names = {**libraries, **facts["python"]}
+    return {
+        "facts": facts, "cases": cases, "passed": [c for c in cases if c["pass"]],
+        "missed": [c for c in cases if not c["pass"]], "comparisons": comparisons, "measured": measured,
+        "pending": pending, "failures": comparison.get("failures", []), "tracks": tracks,
+        "worst_energy": max(track["energy_relative_error"] for track in tracks),
+        "worst_species": max(track["species_relative_error"] for track in tracks),
+        "errata": fill_errata(given.template), "artifacts": artifacts, "inputs": inputs,
+        "revision": ", ".join(revisions),
+        "libraries": ", ".join(f"{name} {version}" for name, version in sorted(names.items())) + ".",
+    }
+
+
+def render(template, facts, figures, picture):
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(template), autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters.update(fixed=fixed, scientific=scientific, short=short, percent_number=percent_number,
+                               percent=lambda share: f"{percent_number(share)} %")
+    shown = [{**figure, "picture": picture(figure)} for figure in figures]
+    style = Markup(existing(Path(template) / "report.css").read_text(encoding="utf-8"))
+    return environment.get_template("report.html").render(**facts, figures=shown, style=style)
+
+
+def write(path, content):
+    """Under another name first: a report is there whole, or not at all."""
+    partial = path.with_name(path.name + ".tmp")
+    partial.write_bytes(content)
+    os.replace(partial, path)
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--work", required=True, help="folder of the profile's results")
+    arguments.add_argument("--figures", required=True, help="folder of the figures")
+    arguments.add_argument("--verification", required=True, help="verification.json")
+    arguments.add_argument("--comparison", required=True, help="validation.json")
+    arguments.add_argument("--circumstances", required=True, help="circumstances.json")
+    arguments.add_argument("--template", required=True, help="folder with report.html, report.css, errata.toml")
+    arguments.add_argument("--output", required=True, help="path without suffix; .html and .pdf are written")
+    given = arguments.parse_args()
+
+    facts, figures = report_facts(given), read_figures(given.figures)
+    page = render(given.template, facts, figures, inline_svg)
+    printed = render(given.template, facts, figures, embedded_svg)
+
+    import weasyprint  # slow to load: only once the page stands
+
+    pdf = weasyprint.HTML(string=printed).write_pdf()
+    output = Path(given.output)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    write(output.with_suffix(".html"), page.encode())
+    write(output.with_suffix(".pdf"), pdf)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except MissingArtifact as problem:
+        print(f"build_report.py: error: {problem}", file=sys.stderr)
+        sys.exit(2)
