@@ -86,11 +86,15 @@ void add_measured(json& result, const LineRequest& request, const SimulatedProfi
   const Measured m = read_measured(request);
   const auto r = register_profiles(line.position, seen, m.profile.position, m.profile.concentration,
                                    m.profile.uncertainty, m.scan.flagged, request.bounds);
+  json u = numbers(m.profile.uncertainty);
+  if (u.empty()) {
+    u = json(m.profile.position.size(), json());
+  }
   result["status"] = "compared";
   result["measured"] = {{"file", request.measured.string()},
                         {"position_um", micrometres(m.profile.position)},
                         {"concentration", numbers(m.profile.concentration)},
-                        {"concentration_u", numbers(m.profile.uncertainty)},
+                        {"concentration_u", u},
                         {"total", numbers(m.scan.total)},
                         {"flagged_points", m.scan.flagged},
                         {"from", request.from_silicon ? "Si" : "Al"}};
@@ -131,12 +135,21 @@ json compare_line(const LineRequest& request) {
   const double sigma = request.sigma.value_or(interaction_sigma(range));
   const auto seen =
       convolve_gaussian(line.concentration, line.position[1] - line.position[0], sigma);
+  const double length = line.position.back();
+  const bool resolved = track.spacing <= 0.1 * length;
+  if (!resolved) {
+    spdlog::warn(
+        "{}: the spacing of {:.3g} um is coarse for a line of {:.3g} um: the profile shows the "
+        "spacing rather than the mixing",
+        request.run.string(), 1e6 * track.spacing, 1e6 * length);
+  }
   result["line"] = {{"start_um", micrometres(start)},
                     {"end_um", micrometres(end)},
                     {"direction", !request.grain                       ? "given"
                                   : *request.grain == Direction::depth ? "depth"
                                                                        : "lateral"},
                     {"time_us", 1e6 * track.time},
+                    {"resolved", resolved},
                     {"spacing_um", 1e6 * track.spacing}};
   result["interaction"] = {
       {"voltage_kV", request.voltage},

@@ -34,6 +34,9 @@ TEST(LineComparison, IsPendingWithoutAMeasurement) {
   EXPECT_TRUE(result["measured"].is_null());
   EXPECT_TRUE(result["metrics"].is_null());
   EXPECT_EQ(result["line"]["direction"], "lateral");
+  EXPECT_TRUE(result["line"]["resolved"]);
+  request.length = 10e-6;
+  EXPECT_FALSE(compare_line(request)["line"]["resolved"]);
   EXPECT_EQ(result["simulated"]["position_um"].size(), 81u);
   EXPECT_EQ(result["simulated"]["concentration"].size(), 81u);
   EXPECT_EQ(result["simulated"]["concentration_seen"].size(), 81u);
@@ -67,6 +70,19 @@ TEST(LineComparison, RecoversItsOwnProfileFromACsvWithAnotherOrigin) {
   EXPECT_LT(result["metrics"]["RMSE"].get<double>(), 1e-4);
   EXPECT_GT(result["metrics_before"]["RMSE"].get<double>(), 1e-2);
   EXPECT_LT(result["metrics"]["reduced_chi_square"].get<double>(), 1e-2);
+}
+
+TEST(LineComparison, UnknownUncertaintiesAreNullsOfTheSameLength) {
+  LineRequest request;
+  request.run = synthetic_run(one_grain);
+  request.start = {20e-6, -25e-6, -20e-6};
+  request.end = {20e-6, 25e-6, -20e-6};
+  request.measured = fs::path(testing::TempDir()) / "synthetic_scan.csv";
+  std::ofstream(request.measured) << "Distance (um),Al Wt%,Fe Wt%\n0,50,50\n10,40,60\n20,30,70\n";
+  const auto result = compare_line(request);
+  EXPECT_EQ(result["measured"]["concentration_u"].size(), 3u);
+  EXPECT_TRUE(result["measured"]["concentration_u"][0].is_null());
+  EXPECT_TRUE(result["metrics"]["reduced_chi_square"].is_null());
 }
 
 TEST(LineComparison, SaysWhatIsWrong) {
