@@ -69,9 +69,10 @@ RegionFinder::RegionFinder(std::size_t width, std::size_t height, Interpolation 
 
 void RegionFinder::mend(std::span<const float> values, float level) {
   values_ = values;
-  bool any = false;  // by a loop without branches, since almost no frame has any
-  for (const float v : values) any |= v != v;
-  if (!any) return;
+  // A loop without branches, as wide as a float, since almost no frame has any.
+  std::int32_t any = 0;
+  for (const float v : values) any |= v != v ? 1 : 0;
+  if (any == 0) return;
   bool copied = false;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isnan(values[i])) continue;
@@ -257,9 +258,9 @@ std::optional<Region> RegionFinder::largest(std::span<const float> values, doubl
   std::int32_t label = 0, best = 0;
   const auto width = static_cast<std::size_t>(width_);
   for (std::size_t row = 0; row < values_.size(); row += width) {
-    bool any = false;  // most rows have nothing above the level, which this loop sees at once
-    for (const float v : values_.subspan(row, width)) any |= v >= threshold;
-    if (!any) continue;
+    std::int32_t any = 0;  // most rows have nothing above the level, which this loop sees at once
+    for (const float v : values_.subspan(row, width)) any |= v >= threshold ? 1 : 0;
+    if (any == 0) continue;
     for (std::size_t i = row; i < row + width; ++i) {
       if (!(values_[i] >= threshold) || labels_[i] != 0) continue;
       flood(i, ++label, threshold);

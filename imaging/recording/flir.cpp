@@ -108,7 +108,8 @@ std::optional<Block> read_block(const ByteFile& file, std::uint64_t start, std::
 
 struct Camera {
   FlirConstants constants;
-  double time = 0, frame_rate = 0;        // s since 1970, Hz
+  std::int64_t milliseconds = 0;  // since 1970, as an integer: a double would round the differences
+  double frame_rate = 0;          // Hz
   double saturated = 0, under_range = 0;  // K
 };
 
@@ -142,8 +143,8 @@ Camera read_camera(const ByteFile& file, const Block& block, std::size_t frame) 
   c.planck_r2 = f(0x30C);
   camera.saturated = f(0xA8);
   camera.under_range = f(0xAC);
-  camera.time = number_at<std::uint32_t>(b, 0x384, order) +
-                1e-3 * (number_at<std::uint32_t>(b, 0x388, order) & 0xFFFF);
+  camera.milliseconds = std::int64_t{number_at<std::uint32_t>(b, 0x384, order)} * 1000 +
+                        (number_at<std::uint32_t>(b, 0x388, order) & 0xFFFF);
   camera.frame_rate = number_at<std::uint16_t>(b, 0x464, order);
   if (!(c.planck_r1 > 0 && c.planck_b > 0 && c.planck_r2 > 0 && c.emissivity > 0 &&
         c.window_transmission > 0))
@@ -209,7 +210,8 @@ Recording open_flir(const std::filesystem::path& path) {
                         {"window_transmission", c.window_transmission},
                         {"relative_humidity", c.relative_humidity}};
   if (blocks.size() > 1 && header.frame_rate > 0) {
-    const double elapsed = read_camera(file, blocks.back(), blocks.size() - 1).time - first.time;
+    const auto last = read_camera(file, blocks.back(), blocks.size() - 1).milliseconds;
+    const double elapsed = static_cast<double>(last - first.milliseconds) / 1000;
     const double period = elapsed / static_cast<double>(blocks.size() - 1);
     if (std::abs(period * header.frame_rate - 1) > 0.1)
       header.notes.push_back(fmt::format(
@@ -217,11 +219,11 @@ Recording open_flir(const std::filesystem::path& path) {
           "camera's clock.",
           header.frame_rate, period));
   }
-  return {header, [file, blocks, start = first.time](std::size_t index, Frame& frame) {
+  return {header, [file, blocks, start = first.milliseconds](std::size_t index, Frame& frame) {
             const auto& block = blocks[index];
             const Camera camera = read_camera(file, block, index);
             const FlirTemperature temperature(camera.constants);
-            frame.time = camera.time - start;
+            frame.time = static_cast<double>(camera.milliseconds - start) / 1000;
             frame.counts.resize(frame.values.size());
             widen(file.bytes(block.raw.place + raw_header, 2 * frame.counts.size()), block.order,
                   frame.counts);
