@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every figure draws the same bytes twice, and says in a sentence what it misses."""
+
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+import synthetic_artifacts  # noqa: E402
+
+TRACKS = ("0wt", "1wt", "5wt")
+INPUTS = {
+    "fig01_diffusion": ["verification.json"],
+    "fig02_conduction": ["verification.json"],
+    "fig04_powder_and_pool": ["work/powder_5wt/powder.h5", "work/track_5wt/run.h5"],
+    "fig05_length": [f"work/track_{track}/result.json" for track in TRACKS]
+                    + [f"work/track_{track}/thermography/summary.json" for track in TRACKS],
+    "fig07_profiles": ["work/track_5wt/linescan_depth.json", "work/track_5wt/linescan_lateral.json"],
+    "fig08_history": [f"work/track_{track}/result.json" for track in TRACKS],
+    "fig09_camera": ["work/track_5wt/recording.h5", "work/track_5wt/thermography/summary.json"],
+    "fig10_bare_plate": ["work/track_316L_175W_750/run.h5", "work/track_316L_175W_750/result.json", "validation.json"],
+}
+
+
+def draw(name, inputs, output):
+    return subprocess.run([sys.executable, str(HERE / f"{name}.py"), *map(str, inputs), "--output", str(output)],
+                          capture_output=True, text=True)
+
+
+class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+        synthetic_artifacts.everything(cls.root)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_every_script_is_tested(self):
+        self.assertEqual(sorted(INPUTS), sorted(path.stem for path in HERE.glob("fig[0-9]*.py")))
+
+    def test_equal_artifacts_give_equal_bytes_and_units_on_every_axis(self):
+        for name, inputs in INPUTS.items():
+            with self.subTest(figure=name):
+                bytes_of = []
+                for take in ("first", "second"):
+                    output = self.root / take / f"{name}.svg"
+                    done = draw(name, [self.root / path for path in inputs], output)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    bytes_of.append((output.read_bytes(), output.with_suffix(".json").read_bytes()))
+                self.assertEqual(bytes_of[0], bytes_of[1])
+                # matplotlib keeps each text as a comment beside its glyphs
+                labels = re.findall(r"<!-- (.*?) -->", bytes_of[0][0].decode())
+                self.assertTrue(any(re.search(r"\[.+\]$", label) for label in labels), labels[:20])
+
+    def test_a_missing_artifact_is_one_sentence_and_leaves_nothing(self):
+        for name, inputs in INPUTS.items():
+            for missing in range(len(inputs)):
+                with self.subTest(figure=name, missing=inputs[missing]):
+                    paths = [self.root / path for path in inputs]
+                    paths[missing] = paths[missing].with_name("absent-" + paths[missing].name)
+                    output = self.root / "missing" / f"{name}.svg"
+                    done = draw(name, paths, output)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+                    self.assertIn(paths[missing].name, done.stderr)
+                    self.assertFalse(output.exists())
+
+    def test_a_wrong_kind_of_artifact_is_refused(self):
+        done = draw("fig04_powder_and_pool", [self.root / "work/track_5wt/run.h5"] * 2, self.root / "x.svg")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'meltproof run', where a 'meltproof powder bed' is needed", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report: facts of its errata, equal bytes for equal artifacts, and what it says when something is wrong."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+sys.path[:0] = [str(HERE), str(HERE.parent)]
+import errata_numbers  # noqa: E402
+import synthetic_artifacts  # noqa: E402
+
+# What an earlier, independent calculation of the same contradictions gave, and its last digit.
+PUBLISHED = {
+    "laplacian_printed": (3.98, 0.01), "laplacian_consistent": (1.99, 0.01), "printed_spread_mm": (20, 0.01),
+    "half_space_at_middle": (0.651, 0.001), "stripe_at_middle": (0.303, 0.001), "activation_kJ_mol": (218, 1),
+    "diffusivity_at_liquidus": (1.4e-11, 1e-12), "conductivity_jump_solidus": (1.8, 0.1),
+    "conductivity_jump_liquidus": (2.5, 0.1), "enthalpy_jump_1132_kJ": (53.5, 0.1), "enthalpy_crossing_K": (922.4, 0.1),
+    "enthalpy_jump_liquidus_kJ": (24.1, 0.1), "al_enthalpy_jump_kJ": (7.0, 0.1), "al_enthalpy_zero_K": (253, 1),
+    "steel_enthalpy_zero_K": (302, 1), "viscosity_zero_K": (4405, 1), "molar_mass_as_sum": (332.14, 0.02),
+    "molar_mass_average": (27.1, 0.1), "track_um": (390, 0.1), "domain_mm3": (0.0104, 1e-4),
+    "range_iron_um": (3.16, 0.01), "range_aluminium_um": (8.24, 0.01), "largest_absorptivity": (0.764, 1e-6),
+}
+
+
+def run(script, *arguments):
+    return subprocess.run([sys.executable, str(script), *map(str, arguments)], capture_output=True, text=True, cwd=ROOT,
+                          env={**os.environ, "SOURCE_DATE_EPOCH": "1700000000"})
+
+
+class Errata(unittest.TestCase):
+    def test_each_number_is_the_known_one(self):
+        computed = errata_numbers.numbers(ROOT)
+        self.assertEqual(sorted(computed), sorted(PUBLISHED))
+        for name, (expected, digit) in PUBLISHED.items():
+            self.assertAlmostEqual(computed[name], expected, delta=digit, msg=name)
+
+    def test_the_text_uses_every_number_and_no_other(self):
+        text = (ROOT / "reports/template/errata.toml").read_text(encoding="utf-8")
+        used = set(re.findall(r"\{(\w+):", "\n".join(l for l in text.splitlines() if not l.startswith("#"))))
+        self.assertEqual(used, set(PUBLISHED))
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+        synthetic_artifacts.everything(cls.root)
+        figures = HERE.parent / "figures"
+        for name, inputs in (("fig01_diffusion", ["verification.json"]),
+                             ("fig07_profiles", ["work/track_5wt/linescan_depth.json",
+                                                 "work/track_5wt/linescan_lateral.json"])):
+            run(figures / f"{name}.py", *[cls.root / path for path in inputs], "--output",
+                cls.root / "figures" / f"{name}.svg").check_returncode()
+        run(HERE / "circumstances.py", "--profile", "smoke", "--spacing", "15 um", "--output",
+            cls.root / "circumstances.json").check_returncode()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def build(self, output, **changed):
+        places = {"work": "work", "figures": "figures", "verification": "verification.json",
+                  "comparison": "validation.json", "circumstances": "circumstances.json"}
+        places.update(changed)
+        options = [part for name, place in places.items() for part in (f"--{name}", self.root / place)]
+        return run(HERE / "build_report.py", *options, "--template", ROOT / "reports/template", "--output",
+                   self.root / output)
+
+    def test_equal_artifacts_give_equal_bytes(self):
+        for take in ("first", "second"):
+            done = self.build(take)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for suffix in (".html", ".pdf"):
+            first, second = ((self.root / take).with_suffix(suffix).read_bytes() for take in ("first", "second"))
+            self.assertEqual(first, second, suffix)
+        self.assertTrue((self.root / "first.pdf").read_bytes().startswith(b"%PDF-"))
+
+    def test_the_page_says_what_agrees_differs_and_is_pending_and_loads_nothing(self):
+        self.assertEqual(self.build("page").returncode, 0)
+        page = (self.root / "page.html").read_text(encoding="utf-8")
+        for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "8 of 8 cases", "Figure 2."):
+            self.assertIn(words, page)
+        self.assertFalse(re.findall(r'(?:src|href)="(?!#|data:)', page))
+        names = re.findall(r'\bid="([^"]+)"', page)
+        self.assertEqual(len({n for n in names if "figure" in n}), len([n for n in names if "figure" in n]))
+
+    def test_a_failure_stands_at_the_top_and_fails_the_job(self):
+        comparison = json.loads((self.root / "validation.json").read_text())
+        comparison["failures"] = ['row "x": the table declares "agrees", but it differs']
+        (self.root / "failed.json").write_text(json.dumps(comparison))
+        self.assertEqual(self.build("failed", comparison="failed.json").returncode, 0)
+        self.assertIn("but it differs", (self.root / "failed.html").read_text(encoding="utf-8").split("What was asked")[0])
+        table = run(HERE / "results_table.py", "--verification", self.root / "verification.json", "--comparison",
+                    self.root / "failed.json")
+        self.assertEqual(table.returncode, 1)
+        self.assertIn("but it differs", table.stderr)
+        self.assertEqual(run(HERE / "results_table.py", "--verification", self.root / "verification.json",
+                             "--comparison", self.root / "validation.json").returncode, 0)
+
+    def test_a_missing_artifact_is_one_sentence_and_leaves_nothing(self):
+        done = self.build("missing", comparison="absent.json")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn("absent.json does not exist", done.stderr)
+        self.assertFalse(list(self.root.glob("missing*")))
+
+    def test_circumstances_keep_their_date_when_nothing_changed(self):
+        place = self.root / "circumstances.json"
+        before = place.stat().st_mtime_ns
+        run(HERE / "circumstances.py", "--profile", "smoke", "--spacing", "15 um", "--output", place).check_returncode()
+        self.assertEqual(place.stat().st_mtime_ns, before)
+
+
+if __name__ == "__main__":
+    unittest.main()
