@@ -115,8 +115,8 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
         {"steady", a.length.steady()},
         {"meaning", "the length neither rises nor falls over the frames used, at the 5 % level"}};
   j["uncertainty_leaves_out"] =
-      "the level itself, point spread, motion during the integration time, and non-uniformity of "
-      "the pixels";
+      "the level itself, point spread, motion during the integration time, non-uniformity of the "
+      "pixels, and pixels that the edge of the plate cuts";
   if (a.speed && h.frame_rate > 0) {
     j[a.unit == "m" ? "speed_m_s" : "speed_px_s"] = *a.speed;
     if (settings.scan_speed && a.unit == "m")
@@ -135,7 +135,8 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
   std::string table = fmt::format("frame [1],time [s],min [{0}],max [{0}],mean [{0}],", h.unit);
   if (counts) table += "stored min [count],stored max [count],stored mean [count],";
   table += fmt::format(
-      "saturated [px],dead [px],found [1],onset [{0}],end [{0}],length [{0}],depth [{0}],area "
+      "saturated [px],under range [px],dead [px],found [1],onset [{0}],end [{0}],length "
+      "[{0}],depth [{0}],area "
       "[{0}^2],"
       "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text]\n",
       u);
@@ -146,7 +147,7 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
         number(f.values.low), number(f.values.high), fmt::format("{:.9g}", f.values.mean));
     if (counts)
       table += fmt::format("{},{},{:.10g},", f.counts->low, f.counts->high, f.counts->mean);
-    table += fmt::format("{},{},{},", f.saturated, f.dead, f.found ? 1 : 0);
+    table += fmt::format("{},{},{},{},", f.saturated, f.under_range, f.dead, f.found ? 1 : 0);
     if (f.found)
       table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{}\n",
                            f.onset * s, f.end * s, f.length * s, f.depth * s, f.area * s * s,

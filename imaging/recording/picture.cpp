@@ -58,7 +58,12 @@ Recording open_picture(const std::filesystem::path& path) {
   const std::string bytes = file.bytes(0, file.size());
   check_complete(path, bytes);
   const std::vector<unsigned char> buffer(bytes.begin(), bytes.end());
-  cv::Mat image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+  cv::Mat image;
+  try {
+    image = cv::imdecode(buffer, cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception&) {
+    image.release();  // told below, like a picture that cannot be decoded quietly
+  }
   if (image.empty())
     throw InputError(path.string() +
                      ": the picture is damaged or of a kind that OpenCV cannot decode.");

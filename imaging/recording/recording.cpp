@@ -42,6 +42,12 @@ Recording::Recording(RecordingHeader header, ReadFrame read)
   if (header_.width == 0 || header_.height == 0)
     throw InputError(fmt::format("{}: the frames have no pixels ({} x {}).", header_.path.string(),
                                  header_.width, header_.height));
+  constexpr std::size_t most = 100'000'000;  // pixels: more than any camera has
+  if (header_.width > most || header_.height > most / header_.width)
+    throw InputError(fmt::format(
+        "{}: the frames are said to have {} x {} pixels, more than any camera has; the file is "
+        "damaged.",
+        header_.path.string(), header_.width, header_.height));
 }
 
 void Recording::read(std::size_t index, Frame& frame) const {
