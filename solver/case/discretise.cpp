@@ -118,28 +118,36 @@ Discretisation discretise(const TrackCase& t, const Mixture& mixture) {
   result.bed_additive_mass_fraction = bed.scalar("additive_mass_fraction");
   const auto cells = overlap(bed, domain, dx);
   std::vector<std::pair<Cell, Fill>> fullest(cells.begin(), cells.end());
-  std::stable_sort(fullest.begin(), fullest.end(),
-                   [](const auto& a, const auto& b) { return a.second.all > b.second.all; });
-  std::int64_t points = 0;
+  std::int64_t points = 0, additive_points = 0;
   for (const auto& [cell, fill] : fullest) {
     points += fill.all;
+    additive_points += fill.additive;
   }
   constexpr double cell_points = sub_points * sub_points * sub_points;
-  const auto count =
-      static_cast<std::size_t>(std::llround(static_cast<double>(points) / cell_points));
-  result.powder_volume = static_cast<double>(points) / cell_points * volume;
-  result.powder_volume_error = static_cast<double>(count) * volume / result.powder_volume - 1;
-  double mass = 0, additive = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const auto& [cell, fill] = fullest[n];
-    const double concentration = static_cast<double>(fill.additive) / fill.all;
-    place(cell, 0, concentration,
-          2 * fill.additive > fill.all ? Origin::additive_powder : Origin::base_powder);
-    mass += particles.mass.back();
-    additive += particles.mass.back() * concentration;
-    domain.upper[2] = std::max(domain.upper[2], dx * static_cast<double>(cell[2] + 1));
+  const auto particles_for = [](std::int64_t n) {
+    return std::llround(static_cast<double>(n) / cell_points);
+  };
+  const auto additive_count = static_cast<std::ptrdiff_t>(particles_for(additive_points));
+  const auto base_count = static_cast<std::ptrdiff_t>(particles_for(points - additive_points));
+  // Cells of equal fill keep the order of the map, that is of their place.
+  const auto split = fullest.begin() + additive_count;
+  std::stable_sort(fullest.begin(), fullest.end(), [](const auto& a, const auto& b) {
+    return a.second.additive > b.second.additive;
+  });
+  std::sort(fullest.begin(), split, [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(split, fullest.end(),
+                   [](const auto& a, const auto& b) { return a.second.all > b.second.all; });
+  for (auto at = fullest.begin(); at < std::min(fullest.end(), split + base_count); ++at) {
+    const bool additive = at < split;
+    place(at->first, 0, additive ? 1 : 0, additive ? Origin::additive_powder : Origin::base_powder);
+    domain.upper[2] = std::max(domain.upper[2], dx * static_cast<double>(at->first[2] + 1));
   }
-  result.additive_mass_fraction = mass > 0 ? additive / mass : 0;
+  result.powder_volume = static_cast<double>(points) / cell_points * volume;
+  result.powder_volume_error =
+      static_cast<double>(additive_count + base_count) * volume / result.powder_volume - 1;
+  const double additive_mass = mixture.density(1) * static_cast<double>(additive_count);
+  const double powder_mass = additive_mass + mixture.density(0) * static_cast<double>(base_count);
+  result.additive_mass_fraction = powder_mass > 0 ? additive_mass / powder_mass : 0;
   return result;
 }
 

@@ -54,9 +54,10 @@ struct Discretisation {
   double bed_additive_mass_fraction = 0;  ///< of the powder as spheres; 0 for a bare plate
 };
 
-/// Fills plate and grains with particles on one lattice. A lattice cell becomes powder where grains
-/// fill most of it: the fullest cells are taken until their volume is the grains' (eight sub-points
-/// a side measure the overlap), and a cell's concentration is that of the grain volume in it.
+/// Fills plate and grains with particles on one lattice. Eight sub-points a side measure how much of a
+/// lattice cell each powder fills; the cells fullest of the additive become its particles until its
+/// volume is reached, then likewise the base powder: both volumes are kept to half a particle, and every
+/// particle is of one powder, as in the paper.
 /// @throws InputError when the bed is missing, or too coarse a spacing leaves the beam or layer
 /// unresolved.
 Discretisation discretise(const TrackCase& track, const Mixture& mixture);

@@ -32,7 +32,7 @@ StepLimits step_limits(const StepExtremes& e) {
     limits.gravity = 0.25 * std::sqrt(h / e.gravity);
   }
   if (e.surface_rate > 0) {
-    limits.surface = 0.25 / e.surface_rate;
+    limits.surface = 0.5 / e.surface_rate;
   }
   return limits;
 }

@@ -30,14 +30,14 @@ struct StepLimits {
   double species = std::numeric_limits<double>::infinity();    ///< 0.125 h^2/D (the paper's Eq. 5)
   double gravity = std::numeric_limits<double>::infinity();    ///< 0.25 sqrt(h/g)
 
-  double surface = std::numeric_limits<double>::infinity();  ///< 0.25 m c_p / (d(loss)/dT)
+  double surface = std::numeric_limits<double>::infinity();  ///< 0.5 m c_p / (d(loss)/dT)
 
   double smallest() const;
   std::string smallest_name() const;
 };
 
 /// The criteria of Morris et al. (1997) and the paper's Eq. 5; the last one keeps an evaporating
-/// particle from cooling by more than a quarter of its way back to balance in one step.
+/// particle from cooling by more than half of its way back to balance in one step.
 StepLimits step_limits(const StepExtremes& extremes);
 
 }  // namespace meltproof::solver
