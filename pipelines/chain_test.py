@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The programs as one chain, and what each says to a user's mistake: one sentence, a status, nothing half-written."""
+
+import csv
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
+sys.path.insert(0, str(ROOT / "pipelines/figures"))
+import artifact  # noqa: E402
+
+SMALL = ["--set", "spacing=20 um", "--set", "laser.exposure=300 us", "--set", "domain.depth=120 um",
+         "--set", "domain.width=240 um", "--set", "domain.before=80 um", "--set", "domain.behind=80 um",
+         "--set", "output.averaging_window=100 us"]
+
+
+def run(program, *arguments, **options):
+    return subprocess.run([str(BIN / f"meltproof-{program}"), *map(str, arguments)], capture_output=True, text=True,
+                          cwd=ROOT, **options)
+
+
+class Chain(unittest.TestCase):
+    """Powder, track, camera, thermography and line scan at a spacing that is for plumbing only, not for physics."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+        cls.powder = cls.root / "powder.h5"
+        done = run("powder", "solver/cases/powder_5wt.toml", "--output", cls.powder)
+        assert done.returncode == 0, done.stderr
+        cls.tracks = {}
+        for threads in (1, 2):
+            cls.tracks[threads] = cls.root / f"track_{threads}"
+            done = run("solve", "solver/cases/track_5wt.toml", "--powder", cls.powder, "--output", cls.tracks[threads],
+                       "--threads", threads, *SMALL)
+            assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_energy_and_species_close(self):
+        result = json.loads((self.tracks[2] / "result.json").read_text())
+        self.assertLess(result["energy_relative_error"], 1e-6)
+        self.assertLess(result["species_relative_error"], 1e-10)
+        self.assertGreater(result["additive_wt_percent"], 0)
+
+    def test_one_and_two_threads_give_the_same_bytes_in_every_field(self):
+        with artifact.open_artifact(self.tracks[1] / "run.h5", "meltproof run") as one, \
+                artifact.open_artifact(self.tracks[2] / "run.h5", "meltproof run") as two:
+            names = []
+            one.visititems(lambda name, item: names.append(name) if hasattr(item, "shape") else None)
+            fields = [name for name in names if not name.startswith("provenance")]
+            self.assertGreater(len(fields), 20)
+            for name in fields:
+                self.assertEqual(one[name][()].tobytes(), two[name][()].tobytes(), name)
+                self.assertTrue(artifact.text(one[name].attrs["units"]), name)
+        self.assertEqual((self.tracks[1] / "history.csv").read_bytes(), (self.tracks[2] / "history.csv").read_bytes())
+
+    def test_a_filmed_pool_is_found_and_its_recording_calls_itself_synthetic(self):
+        recording, folder = self.root / "recording.h5", self.root / "thermography"
+        done = run("camera", self.tracks[2] / "run.h5", "--output", recording)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        folder.mkdir()
+        done = run("thermography", recording, "--output", folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        summary = json.loads((folder / "summary.json").read_text())
+        self.assertTrue(summary["melt_pool_found"])
+        self.assertTrue(summary["synthetic"])
+        self.assertEqual((summary["width"], summary["height"]), (96, 40))
+        simulated = artifact.read_table(self.tracks[2] / "history.csv")
+        longest = artifact.column(simulated, "pool_length", "history.csv").max()
+        # Two pixels of 17.6 um at either end, for this coarse run: plumbing, not physics.
+        self.assertLess(abs(summary["length_um"]["mean"] - longest), 4 * 17.6)
+
+    def test_a_line_through_the_track_shows_the_additive(self):
+        place = self.root / "line.json"
+        done = run("linescan", self.tracks[2] / "run.h5", "--start", "20 um, -60 um, 5 um", "--end",
+                   "20 um, 60 um, 5 um", "--output", place)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        line = json.loads(place.read_text())
+        self.assertEqual(line["status"], "pending")
+        self.assertGreater(max(line["simulated"]["concentration"]), 0)
+
+
+class Mistakes(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+        self.output = self.root / "output"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def refused(self, done, *words):
+        """Status 2, one sentence that holds the words, nothing written."""
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        sentences = [line for line in done.stderr.strip().splitlines() if line]
+        self.assertEqual(len(sentences), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        written = [path for path in self.output.rglob("*") if path.is_file()] if self.output.exists() else []
+        self.assertEqual(written, [])
+
+    def case(self, old, new):
+        text = (ROOT / "solver/cases/track_316L_175W_750.toml").read_text()
+        self.assertIn(old, text)
+        text = text.replace("../../data", str(ROOT / "data")).replace(old, new)
+        path = self.root / "case.toml"
+        path.write_text(text)
+        return path
+
+    def test_wrong_unit(self):
+        done = run("solve", self.case('power = "175 W"', 'power = "175 kg"'), "--output", self.output)
+        self.refused(done, "case.toml:14", "laser.power", "kg", "expected a quantity in W")
+
+    def test_number_without_unit(self):
+        done = run("solve", self.case('power = "175 W"', "power = 175"), "--output", self.output)
+        self.refused(done, "case.toml", "power")
+
+    def test_unknown_key(self):
+        done = run("solve", self.case('power = "175 W"', 'power = "175 W"\npowre = "1 W"'), "--output", self.output)
+        self.refused(done, "case.toml", "powre")
+
+    def test_missing_files(self):
+        self.refused(run("solve", self.root / "absent.toml", "--output", self.output), "absent.toml")
+        self.refused(run("powder", self.root / "absent.toml", "--output", self.output / "powder.h5"), "absent.toml")
+        self.refused(run("camera", self.root / "absent.h5", "--output", self.output / "recording.h5"), "absent.h5")
+        self.refused(run("thermography", self.root / "absent.ptw", "--output", self.output), "absent.ptw")
+        self.refused(run("linescan", self.root / "absent.h5", "--grain", "depth", "--output",
+                         self.output / "line.json"), "absent.h5")
+        self.refused(run("calibrate", self.root / "absent.tiff", "--graduation", "100 um", "--graduation-is", "period",
+                         "--output", self.output / "scale.json"), "absent.tiff")
+        self.refused(run("compare", "--table", self.root / "absent.toml", "--results", self.root, "--profile", "desk",
+                         "--output", self.output / "validation.json"), "absent.toml")
+        self.refused(run("verify", self.root / "absent", "--output", self.output / "verification.json"), "absent")
+
+    def test_a_text_file_named_ptw(self):
+        path = self.root / "note.ptw"
+        path.write_text("this is no recording\n")
+        self.refused(run("thermography", path, "--output", self.output), "note.ptw")
+
+    def test_a_truncated_recording_keeps_its_whole_frames_and_says_so(self):
+        sample = ROOT / "../shared/samples/cedip_pyradi_PyradiSampleMWIR.ptw"
+        if not sample.is_file():
+            self.skipTest("the vendors' sample files are not beside this checkout (../shared/samples)")
+        path = self.root / "cut.ptw"
+        path.write_bytes(sample.read_bytes()[:500000])
+        done = run("thermography", path, "--output", self.output)
+        self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
+        summary = json.loads((self.output / "summary.json").read_text())
+        self.assertEqual(summary["frames"], (500000 - 3476) // (1016 + 69 * 64 * 2))
+        self.assertIn("lost", done.stdout + done.stderr)
+
+    def test_a_recording_without_a_pool_says_so(self):
+        sample = ROOT / "../shared/samples/cedip_pyradi_PyradiSampleMWIR.ptw"
+        if not sample.is_file():
+            self.skipTest("the vendors' sample files are not beside this checkout (../shared/samples)")
+        done = run("thermography", sample, "--output", self.output)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("No melt pool", done.stdout)
+        summary = json.loads((self.output / "summary.json").read_text())
+        self.assertFalse(summary["melt_pool_found"])
+        with (self.output / "frames.csv").open() as file:
+            self.assertEqual(len(list(csv.reader(file))), 1 + summary["frames"])
+
+
+class MakeProcess(unittest.TestCase):
+    """The job of the Makefile for a recording; the build stands already when CTest runs."""
+
+    def process(self, **variables):
+        environment = {key: content for key, content in os.environ.items() if not key.startswith(("MAKE", "MFLAGS"))}
+        environment.update(variables)
+        return subprocess.run(["bash", "pipelines/process_recording.sh"], capture_output=True, text=True, cwd=ROOT,
+                              env=environment)
+
+    def test_without_a_recording_it_says_how_to_call_it(self):
+        done = self.process(RECORDING="")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("make process RECORDING=", done.stderr)
+
+    def test_a_missing_recording_and_an_unexplained_scale_are_refused(self):
+        self.assertIn("does not exist", self.process(RECORDING="no such/file.ptw").stderr)
+        scale = "data/scales/synthetic_across_x.h5"
+        done = self.process(RECORDING=scale, CALIBRATION=scale)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("GRADUATION_IS", done.stderr)
+
+    @unittest.skipUnless((BIN / "meltproof-thermography").exists() and BIN == ROOT / "build/release/bin",
+                         "needs the build of the preset release")
+    def test_a_path_with_spaces_is_processed(self):
+        sample = ROOT / "../shared/samples/meltpool_sample_img.bmp"
+        if not sample.is_file():
+            self.skipTest("the vendors' sample files are not beside this checkout (../shared/samples)")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "a melt pool.bmp"
+            shutil.copyfile(sample, path)
+            output = Path(folder) / "the results"
+            done = self.process(RECORDING=str(path), OUTPUT=str(output))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            summary = json.loads((output / "summary.json").read_text())
+            self.assertTrue(summary["melt_pool_found"])
+            self.assertEqual((summary["frames"], summary["width"], summary["height"]), (1, 120, 128))
+            self.assertTrue((output / "annotated.png").stat().st_size > 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
