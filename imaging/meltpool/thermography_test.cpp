@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole program, run as a user runs it.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -81,6 +83,9 @@ TEST_F(Thermography, DescribesThePtwSampleAndSaysThatItHasNoPool) {
   const std::string table = read_file(output() / "frames.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 101);
   EXPECT_NE(table.find("\n0,0,6116,6439,6269.10009,"), std::string::npos) << table.substr(0, 400);
+  std::istringstream rows(table);
+  for (std::string row; std::getline(rows, row);)
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 18) << row;
 }
 
 TEST_F(Thermography, DescribesTheSeqAndTiffSamples) {
