@@ -95,6 +95,7 @@ int main(int argc, char** argv) {
     const imaging::CalibratedPixel size = imaging::pixel_size(images, graduation);
 
     nlohmann::json json = imaging::calibration_json(size, images, graduation);
+    provenance.wall_time = provenance.elapsed();
     json["provenance"] = provenance.json();
     const auto picture_path = std::filesystem::path(output).replace_extension(".png");
     AtomicFile picture(picture_path);

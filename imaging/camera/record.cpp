@@ -81,7 +81,8 @@ Recorded record_run(const std::filesystem::path& path, const std::filesystem::pa
   RecordingFile file(output, "virtual camera of " + path.filename().string(),
                      section_statement(settings), static_cast<std::size_t>(settings.width),
                      static_cast<std::size_t>(settings.height));
-  file.describe(settings, camera.radiometry());
+  file.describe_sensor(settings, settings.pixel_size);
+  file.describe_radiometry(settings, camera.radiometry());
   file.describe_scene(speed, reference, grid.first_pixel_u(), grid.first_pixel_v());
   Progress progress("film", static_cast<double>(instants.size()));
   for (const auto& instant : instants) {
@@ -117,7 +118,8 @@ Recorded record_rosenthal(const std::filesystem::path& output, const CameraSetti
                           : "Seen from above: the surface z = 0; columns along x, rows along -y.",
                      static_cast<std::size_t>(settings.width),
                      static_cast<std::size_t>(settings.height));
-  file.describe(settings, camera.radiometry());
+  file.describe_sensor(settings, settings.pixel_size);
+  file.describe_radiometry(settings, camera.radiometry());
   file.describe_scene(source.scan_speed, source.reference_temperature, grid.first_pixel_u(),
                       grid.first_pixel_v());
   file.truth("pool_length", pool.length, "m", "Exact length of the analytic pool.");
@@ -145,6 +147,7 @@ Recorded record_scale(const std::filesystem::path& output, const CameraSettings&
   scale.width = static_cast<int>(settings.width);
   scale.height = static_cast<int>(settings.height);
   scale.pixel_size_x = scale.pixel_size_y = settings.pixel_size;
+  scale.point_spread = settings.point_spread;
   scale.seed = seed;
   const cv::Mat image = render_scale(scale);
   std::vector<std::uint16_t> counts;
@@ -157,7 +160,7 @@ Recorded record_scale(const std::filesystem::path& output, const CameraSettings&
       fmt::format("A warmed glass scale: lines of {} um every {} um, {:.3f} degrees.",
                   scale.line_width * 1e6, scale.period * 1e6, scale.angle * 180 / CV_PI),
       static_cast<std::size_t>(settings.width), static_cast<std::size_t>(settings.height));
-  file.describe(settings, camera_radiometry(settings));
+  file.describe_sensor(settings, 0);
   file.truth("pixel_size", settings.pixel_size, "m", "With which the image was rendered.");
   file.truth("period", scale.period, "m", "Of the lines.");
   file.truth("angle", scale.angle, "rad",

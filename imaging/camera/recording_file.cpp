@@ -21,13 +21,19 @@ void RecordingFile::add(const std::vector<std::uint16_t>& counts, double time,
   depths_.push_back(truth.visible_depth);
 }
 
-void RecordingFile::describe(const CameraSettings& camera, const Radiometry& r) {
+void RecordingFile::describe_sensor(const CameraSettings& camera, double pixel_size) {
   writer_.write("integration_time", camera.integration_time, "s",
                 "Time over which a frame collected light, centred on its time.");
   writer_.write("frame_rate", camera.frame_rate, "Hz", "Frames a second.");
-  writer_.write("pixel_size", camera.pixel_size, "m", "Size of a pixel on the object, both axes.");
+  writer_.write("pixel_size", pixel_size, "m",
+                "Size of a pixel on the object, both axes; 0: unknown.");
   writer_.write("saturation_count", camera.full_scale(), "count",
                 "A pixel at this count is saturated.");
+  writer_.write("optics/point_spread", camera.point_spread, "1",
+                "Sigma of the point spread, pixels.");
+}
+
+void RecordingFile::describe_radiometry(const CameraSettings& camera, const Radiometry& r) {
   writer_.write("radiometry/band_lower", r.band_lower, "m", "Lower limit of the band.");
   writer_.write("radiometry/band_upper", r.band_upper, "m", "Upper limit of the band.");
   writer_.write("radiometry/transmission", r.transmission, "1", "Of all windows together.");
@@ -42,8 +48,6 @@ void RecordingFile::describe(const CameraSettings& camera, const Radiometry& r) 
   writer_.write("radiometry/window_temperature", r.window_temperature, "K", "Of the windows.");
   writer_.write("radiometry/window_emission", r.window_emission ? 1.0 : 0.0, "1",
                 "1 if the windows' own radiation is in the signal.");
-  writer_.write("optics/point_spread", camera.point_spread, "1",
-                "Sigma of the point spread, pixels.");
 }
 
 void RecordingFile::describe_scene(double scan_speed, double reference_temperature, double x,
@@ -61,7 +65,7 @@ void RecordingFile::truth(const std::string& name, double value, const std::stri
   writer_.write("truth/" + name, value, unit, description);
 }
 
-void RecordingFile::commit(const Provenance& provenance) {
+void RecordingFile::commit(Provenance provenance) {
   writer_.write("time", times_, {times_.size()}, "s", "Middle of each frame's integration time.");
   if (has_scene_) {
     writer_.write("truth/beam_column", columns_, {columns_.size()}, "1",
@@ -73,6 +77,7 @@ void RecordingFile::commit(const Provenance& provenance) {
     writer_.write("truth/visible_depth", depths_, {depths_.size()}, "m",
                   "The same along the rows.");
   }
+  provenance.wall_time = provenance.elapsed();
   writer_.commit(provenance);
 }
 

@@ -32,8 +32,11 @@ class RecordingFile {
                 const std::string& seen, std::size_t width, std::size_t height);
   /// @param counts height * width, row-major; @param time s.
   void add(const std::vector<std::uint16_t>& counts, double time, const FrameTruth& truth = {});
-  /// Adds what is known of the camera. `r` carries the gain that was used.
-  void describe(const CameraSettings& camera, const Radiometry& r);
+  /// Adds what is known of the sensor. @param pixel_size m; 0 where it is what the recording is to
+  /// tell.
+  void describe_sensor(const CameraSettings& camera, double pixel_size);
+  /// Adds what turns counts into temperature. `r` carries the gain that was used.
+  void describe_radiometry(const CameraSettings& camera, const Radiometry& r);
   /// Adds what is known of the scene. @param scan_speed m s-1; @param reference_temperature K;
   /// @param x, z place of the first pixel's centre in the run's coordinates, m.
   void describe_scene(double scan_speed, double reference_temperature, double x, double z);
@@ -41,7 +44,7 @@ class RecordingFile {
   void truth(const std::string& name, double value, const std::string& unit,
              const std::string& description);
   std::size_t frames() const { return times_.size(); }
-  void commit(const Provenance& provenance);
+  void commit(Provenance provenance);
 
  private:
   ArtifactWriter writer_;

@@ -65,7 +65,7 @@ Scene render_section(const ParticleSnapshot& snapshot, const CameraSettings& cam
         for (int c = first; c <= last; ++c) {
           const double q = std::hypot(c - column, r - row) / reach;
           if (q >= 1) continue;
-          const double w = std::pow(1 - q, 4) * (1 + 4 * q);
+          const double p = (1 - q) * (1 - q), w = p * p * (1 + 4 * q);
           weight[c] += w;
           temperature[c] += w * snapshot.temperature[i];
           emitted[c] += w * emissivity;

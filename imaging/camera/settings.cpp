@@ -208,11 +208,6 @@ InputTable scale_table(ScaleScene& s) {
       .quantity(s.phase, {.name = "phase",
                           .unit = "1",
                           .about = "Of a line's centre against the image's, in periods."})
-      .quantity(s.point_spread, {.name = "point_spread",
-                                 .unit = "1",
-                                 .about = "Sigma of the Gaussian point spread in pixels.",
-                                 .minimum = 1e-3,
-                                 .maximum = 20})
       .quantity(s.glass, {.name = "glass", .unit = "1", .about = "Counts between the lines."})
       .quantity(s.contrast,
                 {.name = "contrast", .unit = "1", .about = "Counts of a line above the glass."})

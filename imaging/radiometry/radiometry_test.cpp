@@ -44,6 +44,20 @@ TEST(Temperature, UncorrectedReadingsOfThePapersWindows) {
   EXPECT_NEAR(temperature(scene, signal(scene, 1673.15)), 1673.15, 1e-6);
 }
 
+// Every term once, with the radiances of the first test.
+TEST(Signal, IsTheStatedEquation) {
+  Radiometry r;
+  r.transmission = 0.313;
+  r.emissivity = 0.3;
+  r.gain = 4e4;
+  r.dark = 512;
+  r.ambient_temperature = 300;
+  r.integration_time = 20e-6;
+  EXPECT_NEAR(signal(r, 1000), 4e4 * 20e-6 * 0.313 * (0.3 * 6506.73 + 0.7 * 1.86596) + 512, 1e-3);
+  EXPECT_NEAR(signal(r, 1000, 0.2), 4e4 * 20e-6 * 0.313 * (0.2 * 6506.73 + 0.8 * 1.86596) + 512,
+              1e-3);
+}
+
 TEST(Temperature, OnePercentOfSignalIsSixAndAHalfKelvin) {
   Radiometry r;
   EXPECT_NEAR(temperature(r, 1.01 * signal(r, 1673)) - 1673, 6.5, 0.1);
