@@ -23,15 +23,22 @@ int main(int argc, char** argv) {
   return program.run(argc, argv, [&] {
     solver::PowderSettings settings;
     Input input(solver::powder_table(settings));
-    if (options.handle(input)) {
+    const bool done = options.handle(input);
+    if (!done || options.validate) {
+      try {
+        solver::check(settings);
+      } catch (const InputError& problem) {
+        throw InputError(options.path + ": " + problem.what());
+      }
+    }
+    if (done) {
       return ExitStatus::success;
     }
-    solver::check(settings);
     const auto start = std::chrono::steady_clock::now();
     solver::PowderBed bed;
     {
       Progress progress("powder", 1);
-      bed = solver::generate(settings, [&progress](double done) { progress.update(done); });
+      bed = solver::generate(settings, [&progress](double share) { progress.update(share); });
     }
     provenance.resolved_input = input.resolved();
     for (const auto& file : input.files()) {

@@ -2,9 +2,11 @@
 #include "solver/powder/drop_and_roll.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include "solver/powder/arc.hpp"
 #include "solver/powder/descent.hpp"
@@ -126,48 +128,31 @@ class Roll {
       }
     }
     double angle = release_angle(arc, carrying);
-    Contact next;
-    bool meets = false;
-    const auto meet = [&](double at, const Contact& contact) {
-      if (at < angle) {
-        angle = at;
-        next = contact;
-        meets = true;
-      }
-    };
     for (const Contact& plane : planes_) {
       const auto now = std::find_if(contacts_.begin(), contacts_.end(), [&plane](const Contact& c) {
         return c.plane() && c.direction == plane.direction;
       });
       if (now == contacts_.end()) {
-        meet(arc.distance_to_plane(plane.direction, plane.point, radius_).falls(), plane);
+        angle =
+            std::min(angle, arc.distance_to_plane(plane.direction, plane.point, radius_).falls());
       }
     }
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       if (std::find(carrying.begin(), carrying.end(), static_cast<int>(i)) == carrying.end()) {
-        meet(distance_wave(arc, contacts_[i]).falls_again(), contacts_[i]);
+        angle = std::min(angle, distance_wave(arc, contacts_[i]).falls_again());
       }
     }
     grid_.visit_near(
         arc.centre, arc.radius + radius_ + largest_, [&](const SphereGrid::Near& near) {
           const double contact = radius_ + near.radius;
           if ((near.centre - arc.centre).norm() < arc.radius + contact && !touches(near)) {
-            meet(arc.distance_to(near.centre, contact).falls(),
-                 {near.index, near.centre, contact, Vector3d::UnitZ()});
+            angle = std::min(angle, arc.distance_to(near.centre, contact).falls());
           }
         });
     if (!std::isfinite(angle)) {
       return false;
     }
     place_ = arc.at(angle);
-    std::vector<Contact> exact;
-    for (const int i : carrying) {
-      exact.push_back(contacts_[i]);
-    }
-    if (meets) {
-      exact.push_back(next);
-    }
-    settle_onto(exact);
     return true;
   }
 
@@ -245,29 +230,6 @@ class Roll {
       angle = std::min(angle, now > 1e-9 * scale ? force.falls() : force.falls_again());
     }
     return angle;
-  }
-
-  /// Removes the rounding of the event's angle: Newton steps of least length onto up to three
-  /// contacts.
-  void settle_onto(const std::vector<Contact>& exact) {
-    for (int step = 0; step < 3; ++step) {
-      Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero(), unused = Eigen::Matrix3d::Identity();
-      Vector3d gap = Vector3d::Zero();
-      for (std::size_t i = 0; i < exact.size(); ++i) {
-        const auto row = static_cast<Eigen::Index>(i);
-        const Contact& c = exact[i];
-        const Vector3d from = place_ - c.point;
-        jacobian.row(row) = c.plane() ? c.direction : from.normalized();
-        gap(row) = c.plane() ? c.direction.dot(from) - radius_ : from.norm() - c.distance;
-        unused(row, row) = 0;
-      }
-      // Rows that are not used leave ones on the diagonal and drop out.
-      const Eigen::Matrix3d gram = jacobian * jacobian.transpose() + unused;
-      if (std::abs(gram.determinant()) < 1e-9) {
-        return;  // contacts nearly in line: the event itself is as exact as it can be
-      }
-      place_ -= jacobian.transpose() * (gram.inverse() * gap);
-    }
   }
 
   std::optional<Settled> settled(const Descent& descent) const {

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "base/artifact.hpp"
 #include "base/error.hpp"
@@ -11,6 +14,10 @@
 
 namespace meltproof::solver {
 namespace {
+
+/// A sphere on an edge of balance is dropped again; more often than this in a row only by a
+/// mistake.
+constexpr int most_attempts = 1000;
 
 /// Everything that came to rest, in the order of dropping.
 struct Heap {
@@ -39,17 +46,21 @@ Heap fill(const PowderSettings& settings, const Blend& blend, Random& random,
   double volume = 0;
   for (long long above = 0; above < enough;) {
     const double radius = blend.draw(random) / 2;
-    for (;;) {
-      const double margin = settings.periodic ? 0 : radius;
+    const double margin = settings.periodic ? 0 : radius;
+    std::optional<Settled> settled;
+    for (int attempt = 0; !settled; ++attempt) {
+      if (attempt == most_attempts) {
+        throw std::runtime_error(
+            fmt::format("a sphere of {} um found no rest in {} attempts after {} others",
+                        2e6 * radius, attempt, grid.spheres().size()));
+      }
+      heap.dropped_again += attempt > 0 ? 1 : 0;
       const double x = margin + random.uniform() * (settings.length_x - 2 * margin);
       const double y = margin + random.uniform() * (settings.length_y - 2 * margin);
-      if (const auto settled = drop_and_roll(grid, largest, radius, x, y)) {
-        grid.add(settled->sphere);
-        heap.supports.push_back(settled->supports);
-        break;
-      }
-      ++heap.dropped_again;
+      settled = drop_and_roll(grid, largest, radius, x, y);
     }
+    grid.add(settled->sphere);
+    heap.supports.push_back(settled->supports);
     above = above_layer(grid.spheres().back(), settings) ? above + 1 : 0;
     volume += sphere_volume_between(grid.spheres().back(), 0, settings.layer_height);
     if (progress) {

@@ -2,9 +2,11 @@
 // A powder bed: spheres of two materials at rest on the plate, ready for the solver.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/input.hpp"

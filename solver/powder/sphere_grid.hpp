@@ -2,6 +2,8 @@
 // Spheres at rest in a box, found again by place.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <chrono>
+#include "solver/powder/powder_bed.hpp"
+
 #include <cmath>
+#include <ctime>
 #include <numbers>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "base/artifact.hpp"
 #include "base/error.hpp"
-#include "solver/powder/blend.hpp"
-#include "solver/powder/descent.hpp"
-#include "solver/powder/powder_bed.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -49,8 +47,7 @@ double deepest_overlap(const PowderBed& bed, const PowderSettings& s) {
   return deepest;
 }
 
-/// Whether every sphere lies on the floor, or the upward force can be made of pushes at its
-/// supports.
+/// Every sphere lies on the floor, or the upward force can be made of pushes at its supports.
 void expect_stable(const PowderBed& bed, const PowderSettings& s) {
   for (std::size_t i = 0; i < bed.spheres.size(); ++i) {
     const Sphere& sphere = bed.spheres[i];
@@ -132,153 +129,8 @@ TEST(DropAndRoll, LeavesNoOverlapsAndEverySphereStable) {
     ASSERT_GT(bed.spheres.size(), 4000U);
     EXPECT_LT(deepest_overlap(bed, s), 1e-9);
     expect_stable(bed, s);
-    EXPECT_LT(bed.dropped_again, bed.dropped / 1000);
+    EXPECT_EQ(bed.dropped_again, 0);
   }
-}
-
-TEST(DropAndRoll, StopsASphereOverThreeOthersInTheirPocket) {
-  // Three equal spheres in contact on the floor: the fourth ends on top at sqrt(8/3) r above them.
-  SphereGrid grid(100, 100, 2, false);
-  grid.add({{50, 50, 1}, 1});
-  grid.add({{52, 50, 1}, 1});
-  grid.add({{51, 50 + std::numbers::sqrt3, 1}, 1});
-  const Vector3d pocket(51, 50 + 1 / std::numbers::sqrt3, 1 + std::sqrt(8. / 3));
-  for (const double x : {50.8, 51.0, 51.3}) {
-    const auto settled = drop_and_roll(grid, 1, 1, x, 50.5);
-    ASSERT_TRUE(settled);
-    EXPECT_NEAR((settled->sphere.centre - pocket).norm(), 0, 1e-9);
-  }
-}
-
-TEST(DropAndRoll, RollsASphereOffASingleOneOntoTheFloor) {
-  SphereGrid grid(100, 100, 2, false);
-  grid.add({{50, 50, 1}, 1});
-  const auto settled = drop_and_roll(grid, 1, 1, 50.3, 50.4);
-  ASSERT_TRUE(settled);
-  // It leaves at the widest place, in the direction in which it rolled.
-  EXPECT_NEAR(settled->sphere.centre.z(), 1, 1e-12);
-  EXPECT_NEAR(settled->sphere.centre.x(), 50 + 2 * 0.6, 1e-9);
-  EXPECT_NEAR(settled->sphere.centre.y(), 50 + 2 * 0.8, 1e-9);
-  EXPECT_EQ(settled->supports[0], floor_support);
-}
-
-TEST(DropAndRoll, RollsOverTwoUnequalSpheresAndStopsAtTheFloor) {
-  // Two spheres far enough apart for a small one to fall between them.
-  SphereGrid grid(100, 100, 6, false);
-  grid.add({{47, 50, 3}, 3});
-  grid.add({{53.5, 50, 3}, 3});
-  const auto settled = drop_and_roll(grid, 3, 1, 50.2, 50.3);
-  ASSERT_TRUE(settled);
-  EXPECT_NEAR(settled->sphere.centre.z(), 1, 1e-9);
-  for (const Sphere& other : grid.spheres()) {
-    EXPECT_GT((settled->sphere.centre - other.centre).norm(), 4 - 1e-9);
-  }
-}
-
-TEST(SteepestDescent, IsGravityLessTheContactForces) {
-  using D = std::vector<Vector3d>;
-  EXPECT_EQ(steepest_descent(D{}).count, 0);
-  const Vector3d side = Vector3d(0.6, 0, 0.8);
-  const Descent one = steepest_descent(D{side});
-  EXPECT_EQ(one.count, 1);
-  EXPECT_NEAR((one.direction - Vector3d(0.48, 0, -0.36)).norm(), 0, 1e-12);
-  const Descent valley = steepest_descent(D{Vector3d(0.6, 0.48, 0.64), Vector3d(-0.6, 0.48, 0.64)});
-  EXPECT_EQ(valley.count, 2);
-  EXPECT_NEAR(valley.direction.x(), 0, 1e-12);
-  EXPECT_GT(valley.direction.y(), 0);
-  const Descent pocket =
-      steepest_descent(D{Vector3d(0.6, 0, 0.8), Vector3d(-0.3, 0.52, 0.8).normalized(),
-                         Vector3d(-0.3, -0.52, 0.8).normalized()});
-  EXPECT_TRUE(pocket.rests);
-  EXPECT_EQ(pocket.count, 3);
-}
-
-TEST(SizeDistribution, HasTheMomentsOfALogNormal) {
-  SizeSettings settings;
-  settings.geometric_deviation = 1.4;
-  settings.truncation = 5;
-  settings.by_volume = false;
-  const SizeDistribution sizes(settings, "base");
-  const double s = std::log(1.4);
-  EXPECT_NEAR(sizes.moment(1), 13.7e-6 * std::exp(s * s / 2), 1e-4 * 13.7e-6);
-  Random random(3);
-  double sum = 0, logs = 0, squares = 0;
-  const int n = 200000;
-  for (int i = 0; i < n; ++i) {
-    const double d = sizes.draw(random);
-    sum += d;
-    logs += std::log(d / 13.7e-6);
-    squares += std::pow(std::log(d / 13.7e-6), 2);
-  }
-  const double four_errors = 4 / std::sqrt(n);
-  EXPECT_NEAR(sum / n, sizes.moment(1), four_errors * s * sizes.moment(1));
-  EXPECT_NEAR(logs / n, 0, four_errors * s);
-  EXPECT_NEAR(squares / n, s * s, four_errors * std::numbers::sqrt2 * s * s);
-}
-
-TEST(SizeDistribution, TurnsVolumeIntoNumberByHatchAndChoate) {
-  SizeSettings settings;
-  settings.d10 = 9e-6;
-  settings.d50 = 14e-6;
-  settings.d90 = 22e-6;
-  settings.truncation = 3;
-  const SizeDistribution sizes(settings, "base");
-  const double s = std::log(22. / 9) / (2 * 1.2815515655446004);
-  EXPECT_NEAR(sizes.median(), 14e-6 * std::exp(-3 * s * s), 1e-18);
-  EXPECT_NEAR(sizes.volume_quantile(0.5), 14e-6, 1e-10);
-  // The cut draws the outer percentiles in by a little.
-  EXPECT_NEAR(sizes.volume_quantile(0.1), 14e-6 * std::exp(-1.28155 * s), 0.01 * 9e-6);
-  Random random(5);
-  double below = 0, all = 0;
-  for (int i = 0; i < 200000; ++i) {
-    const double d = sizes.draw(random), volume = d * d * d;
-    all += volume;
-    below += d < 14e-6 ? volume : 0;
-  }
-  EXPECT_NEAR(below / all, 0.5, 0.01);
-}
-
-TEST(Blend, HasTheMassFractionAskedForWithinOneSphere) {
-  for (const double asked : {0.01, 0.05, 0.5}) {
-    for (const double density : {7763., 2670.}) {
-      PowderSettings s;
-      s.additive_mass_fraction = asked;
-      s.additive.density = density;
-      s.additive.size.d50 = 11.3e-6;
-      s.base.size.d50 = 15.4e-6;
-      const PowderBed bed = generate(s);
-      double total = 0;
-      for (std::size_t i = 0; i < bed.spheres.size(); ++i) {
-        total += (bed.material[i] == 1 ? density : 7763) * std::pow(bed.spheres[i].radius, 3);
-      }
-      const double largest =
-          std::pow(SizeDistribution(s.additive.size, "additive").largest() / 2, 3) * 7763;
-      EXPECT_NEAR(bed.additive_mass_fraction, asked, largest / total);
-      EXPECT_GT(bed.additive_mass_fraction, 0);
-    }
-  }
-}
-
-TEST(Blend, KeepsTheSizesOfBothPowders) {
-  PowderSettings s;
-  s.base.size.d50 = 15.4e-6;
-  s.additive.size.d50 = 11.3e-6;
-  const Blend blend{{s.base.size, "base"}, {s.additive.size, "additive"}, 7763, 2670, 0.3};
-  Random random(7);
-  std::vector<Sphere> spheres(40000);
-  for (Sphere& sphere : spheres) {
-    sphere.radius = blend.draw(random) / 2;
-  }
-  const auto material = assign_materials(spheres, blend, random);
-  EXPECT_NEAR(additive_mass_fraction(spheres, material, blend), 0.3, 1e-4);
-  double sum[2] = {0, 0}, count[2] = {0, 0};
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    sum[material[i]] += 2 * spheres[i].radius;
-    ++count[material[i]];
-  }
-  EXPECT_NEAR(count[1] / 40000, blend.additive_number_fraction(), 0.01);
-  EXPECT_NEAR(sum[0] / count[0] / blend.base.moment(1), 1, 0.01);
-  EXPECT_NEAR(sum[1] / count[1] / blend.additive.moment(1), 1, 0.01);
 }
 
 TEST(PowderBed, IsTheSameForTheSameSeedOnly) {
@@ -374,12 +226,11 @@ TEST(PowderBed, OfTenThousandSpheresTakesSeconds) {
   s.length_x = 1500e-6;
   s.length_y = 800e-6;
   s.layer_height = 25e-6;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const PowderBed bed = generate(s);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   EXPECT_GT(bed.spheres.size(), 10000U);
-  EXPECT_LT(seconds, 20);  // 1 s when the machine is idle; generous for a shared one and sanitizers
+  EXPECT_LT(seconds, 20);  // of processor time; 1.3 s measured, the rest is for sanitizers
   std::cout << bed.spheres.size() << " spheres in " << seconds << " s\n";
 }
 
