@@ -14,8 +14,8 @@ def main():
     arguments.add_argument("--output", required=True, help="the SVG file to write")
     given = arguments.parse_args()
 
-    cases = verification.load_cases(given.verification, ["slab", "stefan"])
-    figure, panels = plt.subplots(2, (len(cases) + 2) // 2, figsize=(style.PAGE_WIDTH, 4.6), squeeze=False)
+    cases = verification.load_cases(given.verification, ["conduction", "stefan"])
+    figure, panels = plt.subplots((len(cases) + 3) // 3, 3, figsize=(style.PAGE_WIDTH, 4.6), squeeze=False)
     panels = list(panels.flat)
     for axes, case in zip(panels, cases):
         verification.plot_profile(axes, case, given.verification)
@@ -24,7 +24,7 @@ def main():
         unused.remove()
 
     style.save(figure, given.output, "Heat conduction and melting against exact solutions",
-               "Profiles of the conduction slab and of the one-phase Stefan problem: exact solution as a line, "
+               "Temperature in slabs and in the one-phase Stefan problem: exact solution as a line, "
                "SPH particles as markers, and the errors against the particle spacing. "
                + verification.caption_sentences(cases))
 

@@ -22,13 +22,14 @@ def main():
     quantities = [(word, artifact.value(result, f"fusion_{word}_um", given.result),
                    artifact.value(rows, f"bare_316l_{word}", given.comparison)) for word in ("width", "depth")]
 
-    figure, (section, bars) = plt.subplots(1, 2, figsize=(style.PAGE_WIDTH, 2.7), width_ratios=[1.9, 1])
+    figure, (section, explained, bars) = plt.subplots(1, 3, figsize=(style.PAGE_WIDTH, 2.5),
+                                                      width_ratios=[30, 1, 16])
     with artifact.open_artifact(given.run, "meltproof run") as run:
         last = artifact.snapshots(run)[-1]
         liquidus = artifact.scalar(run, "reference_temperature")
         middle = 0.6 * artifact.scalar(run, "scan_speed") * artifact.scalar(run, "exposure")
-        sections.plot_field(figure, section, run, last, "peak_temperature", "x", "highest temperature [K]",
-                            contour=liquidus, at=middle)
+        sections.plot_field(section, explained, run, last, "peak_temperature", "x", "highest temperature [K]",
+                            liquidus, at=middle)
     section.set_title("a  Section across the track; line: liquidus")
 
     sentences = []

@@ -12,9 +12,8 @@ MICRON = 1e-6
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
-def last_with_beam(run):
-    """The last snapshot in which metal is liquid enough to hold a pool: the largest liquid content of the
-    second half of the run, in which the pool is longest."""
+def last_hot(run):
+    """The last snapshot with more than half the largest amount of liquid: the pool before the beam goes off."""
     names = artifact.snapshots(run)
     liquid = [float(artifact.data(run, f"{name}/liquid_fraction").sum()) for name in names]
     if max(liquid) == 0:
@@ -47,24 +46,21 @@ def frame(axes, horizontal, vertical, side, first, second):
     axes.grid(False)
 
 
-def plot_origin(axes, run, snapshot, normal, materials):
-    """Plate, base powder and additive powder."""
+def plot_origin(axes, run, snapshot, normal, looks):
+    """Where each particle comes from; `looks` are (name, colour) of plate, base powder, additive powder."""
     chosen, horizontal, vertical, first, second = slice_of(run, snapshot, normal)
     side = artifact.scalar(run, "spacing") / MICRON
     origin = artifact.data(run, f"{snapshot}/origin")[chosen]
-    looks = [("plate", "#e6e6e6", ""), (f"{materials[0][0]} powder", "#9a9a9a", ""),
-             (f"{materials[1][0]} powder", materials[1][1], "////")]
-    for number, (name, colour, hatch) in enumerate(looks):
+    for number, (name, colour) in enumerate(looks):
         picked = origin == number
-        if picked.any():
-            axes.add_collection(PolyCollection(squares(horizontal[picked], vertical[picked], side), facecolor=colour,
-                                               edgecolor="white", linewidth=0.15, hatch=hatch, label=name))
+        axes.add_collection(PolyCollection(squares(horizontal[picked], vertical[picked], side), facecolor=colour,
+                                           edgecolor="white", linewidth=0.15, label=name))
     frame(axes, horizontal, vertical, side, first, second)
-    axes.legend(loc="lower right", frameon=True, framealpha=0.9, handlelength=1.2)
 
 
-def plot_field(figure, axes, run, snapshot, field, normal, label, contour=None, scale=1.0, at=0.0):
-    """One field in a section, with the contour line of one value; returns the largest value shown."""
+def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None, scale=1.0, at=0.0):
+    """One field in a section, its colours explained in `bar_axes`, with the contour line of one value; returns
+    the largest value shown."""
     chosen, horizontal, vertical, first, second = slice_of(run, snapshot, normal, at)
     side = artifact.scalar(run, "spacing") / MICRON
     values = scale * artifact.data(run, f"{snapshot}/{field}")[chosen]
@@ -80,5 +76,5 @@ def plot_field(figure, axes, run, snapshot, field, normal, label, contour=None, 
         grid.set_mask(longest > 2.0 * side)  # no line across gaps between grains
         axes.tricontour(grid, values, levels=[contour], colors="white", linewidths=1.4)
         axes.tricontour(grid, values, levels=[contour], colors="black", linewidths=0.5, linestyles="--")
-    figure.colorbar(colours, ax=axes, label=label, pad=0.01, aspect=12)
+    axes.figure.colorbar(colours, cax=bar_axes, label=label)
     return float(values.max())
