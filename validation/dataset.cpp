@@ -56,10 +56,8 @@ InputTable file_table(DataFile& file) {
 
 void check_header(const DataFile& file, const std::vector<std::string>& header) {
   const std::string place = file.path.string();
-  std::vector<ColumnHeader> found;
-  for (const auto& cell : header) {
-    found.push_back(parse_header(cell));
-  }
+  std::vector<ColumnHeader> found(header.size());
+  std::transform(header.begin(), header.end(), found.begin(), parse_header);
   for (const auto& column : file.columns) {
     const auto at = std::find_if(found.begin(), found.end(),
                                  [&](const ColumnHeader& h) { return h.name == column.name; });

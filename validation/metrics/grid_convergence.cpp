@@ -72,13 +72,14 @@ FittedConvergence fit_convergence(std::span<const double> spacings,
     result.amplitude /= std::pow(spacings[0], order);
     return result;
   };
-  const double lowest = 0.2, highest = 4.0;
+  const double lowest = 0.2, highest = 4.0, step = 0.05;
   double best = lowest;
-  for (double order = lowest; order <= highest; order += 0.05) {
+  for (int i = 0; lowest + i * step <= highest; ++i) {
+    const double order = lowest + i * step;
     best = fit(order).scatter < fit(best).scatter ? order : best;
   }
   // Golden section inside the two neighbours of the best one.
-  double low = best - 0.05, high = best + 0.05;
+  double low = best - step, high = best + step;
   const double golden = 0.5 * (std::sqrt(5.0) - 1);
   for (int i = 0; i < 60; ++i) {
     const double left = high - golden * (high - low), right = low + golden * (high - low);
