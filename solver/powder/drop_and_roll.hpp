@@ -27,7 +27,7 @@ inline constexpr double contact_tolerance = 1e-10;
 /// exact circles from event to event. Does not add it to the grid.
 /// @returns nothing if the sphere ended on an edge of balance or its rest overlaps a neighbour by
 ///          more than 1e-9 of the smaller radius; the caller drops another. Of spheres of many
-///          sizes none did in 118 000; of equal ones along walls, which line up, some 1 %.
+///          sizes none did in 118 000; of equal ones along walls, which line up, about 1 %.
 std::optional<Settled> drop_and_roll(const SphereGrid& grid, double largest_radius, double radius,
                                      double x, double y);
 
