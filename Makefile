@@ -5,6 +5,8 @@ SHELL := /bin/bash
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 .SUFFIXES:
 .DELETE_ON_ERROR:
+# Recordings and beds are results too: Make must not remove them as mere steps on the way.
+.SECONDARY:
 # A stage uses all cores that it is given (THREADS), so stages run one at a time, also under -j.
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
