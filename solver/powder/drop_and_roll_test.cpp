@@ -87,14 +87,14 @@ TEST(DropAndRoll, EndsWhereASphereEndsThatCreepsDownhillInSmallSteps) {
     heap.add(settled->sphere);
     grid.add({settled->sphere.centre + Vector3d(24, 24, 0), radius});
   }
-  const int all = 200;
+  const int all = 100;
   int same = 0, rolled = 0;
   for (int i = 0; i < all; ++i) {
     const double radius = 0.6 + random.uniform();
     const double x = 24 + 12 * random.uniform(), y = 24 + 12 * random.uniform();
     const auto settled = drop_and_roll(grid, 2, radius, x, y);
     ASSERT_TRUE(settled);
-    const Vector3d end = settled->sphere.centre, crept = creep(grid, radius, {x, y, 12}, 1e-3);
+    const Vector3d end = settled->sphere.centre, crept = creep(grid, radius, {x, y, 12}, 2e-3);
     rolled += (end - Vector3d(x, y, end.z())).norm() > 0.2 ? 1 : 0;
     same += (end - crept).norm() < 0.02 ? 1 : 0;
   }
