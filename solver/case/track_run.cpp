@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -75,7 +76,9 @@ void add_fusion_zone(nlohmann::json& result, const TrackCase& t, const Engine& e
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double x = p.position[i][0];
     const bool middle = x > 0.4 * track && x < 0.8 * track;
-    level[i] = middle ? p.peak_temperature[i] - engine.mixture().liquidus(0) : -1e-3;
+    // Infinitely far below, so that the cut itself makes no crossing between particles.
+    level[i] = middle ? p.peak_temperature[i] - engine.mixture().liquidus(0)
+                      : -std::numeric_limits<double>::infinity();
   }
   const Extent zone = measure_extent(p, engine.neighbours(), level, true);
   result["fusion_width_um"] = 1e6 * zone.width;
