@@ -47,10 +47,12 @@ $(WORK)/track_%/thermography/summary.json: $(WORK)/track_%/recording.h5 $(BIN)/m
 	@$(STAGE) 'thermography, $*' $(BIN)/meltproof-thermography $< --output $(@D) --scan-speed '0.375 m/s'
 
 $(WORK)/track_%/linescan_depth.json: $(WORK)/track_%/run.h5 $(BIN)/meltproof-linescan
-	@$(STAGE) 'line scan in depth, $*' $(BIN)/meltproof-linescan $< --grain depth --output $@
+	@$(STAGE) 'line scan in depth, $*' pipelines/line_scan.sh $@ \
+	  $(BIN)/meltproof-linescan $< --grain depth --output $@
 
 $(WORK)/track_%/linescan_lateral.json: $(WORK)/track_%/run.h5 $(BIN)/meltproof-linescan
-	@$(STAGE) 'line scan across, $*' $(BIN)/meltproof-linescan $< --grain lateral --output $@
+	@$(STAGE) 'line scan across, $*' pipelines/line_scan.sh $@ \
+	  $(BIN)/meltproof-linescan $< --grain lateral --output $@
 
 # Status 1 says that a row is not as its table declares. The table is written all the same, so that the
 # report shows it; the job itself then fails at its end (results_table.py).

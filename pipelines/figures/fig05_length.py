@@ -49,12 +49,14 @@ def main():
     axes.text(0.98, 0.97, PENDING, transform=axes.transAxes, ha="right", va="top", fontsize=7, style="italic",
               bbox=style.PENDING_BOX)
 
+    used = sorted({filmed[track].get("frames_used", "") for track, _ in seen})
+    frames = f" The camera's lengths are means over frames, {'; '.join(used)}." if seen else ""
     left_out = len(tracks) - len(seen)
     note = f" In {left_out} of the filmed tracks no pool was found in the frames." if left_out else ""
     style.save(figure, given.output, "Melt pool length against the additive content (the paper's Fig. 5)",
                "Simulated. " + " ".join(sentences) + " Bars: expanded uncertainty of the mean (k = 2) for the "
                "camera, standard deviation over the averaging window for the other two. Measured lengths are "
-               "pending: the paper shows them in a figure only, and no number of it is known here." + note)
+               "pending: the paper shows them in a figure only, and no number of it is known here." + frames + note)
 
 
 style.run(main)

@@ -2,6 +2,7 @@
 """Fig. 7 of the paper: concentration through one molten AlSi10Mg grain, in depth and across."""
 
 import argparse
+import textwrap
 
 import artifact
 import matplotlib.pyplot as plt
@@ -11,6 +12,11 @@ import style
 def plot(axes, path, letter):
     """One line scan; returns its sentence for the caption."""
     scan = artifact.read_json(path)
+    if artifact.value(scan, "status", path) == "no result":
+        axes.set(xlabel="position along the line [um]", ylabel="AlSi10Mg [wt%]", xlim=(0, 20), ylim=(0, 100))
+        axes.text(0.5, 0.5, textwrap.fill("no result: " + scan["reason"], 42), transform=axes.transAxes, ha="center",
+                  va="center", fontsize=7, style="italic", bbox=style.PENDING_BOX)
+        return f"{letter}: no result, {scan['reason'].rstrip('.')}."
     direction = artifact.value(artifact.value(scan, "line", path), "direction", path)
     axes.set(xlabel="position along the line [um]", ylabel="AlSi10Mg [wt%]")
     axes.set_title(f"{letter}  {'In depth' if direction == 'depth' else 'Lateral'}")

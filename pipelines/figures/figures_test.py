@@ -72,6 +72,15 @@ class Figures(unittest.TestCase):
                     self.assertIn(paths[missing].name, done.stderr)
                     self.assertFalse(output.exists())
 
+    def test_a_line_scan_without_a_result_says_so_in_the_figure(self):
+        empty = self.root / "none.json"
+        empty.write_text('{"status": "no result", "reason": "no grain melted.", "simulated": null}')
+        output = self.root / "none.svg"
+        done = draw("fig07_profiles", [empty, self.root / "work/track_5wt/linescan_lateral.json"], output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no grain melted", output.read_text())
+        self.assertIn("no grain melted", output.with_suffix(".json").read_text())
+
     def test_a_wrong_kind_of_artifact_is_refused(self):
         done = draw("fig04_powder_and_pool", [self.root / "work/track_5wt/run.h5"] * 2, self.root / "x.svg")
         self.assertEqual(done.returncode, 2)
