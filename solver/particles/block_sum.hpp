@@ -14,7 +14,7 @@ namespace meltproof::solver {
 template <class Body>
 void for_each_particle(std::size_t n, const Body& body) {
   const auto count = static_cast<std::int64_t>(n);
-#pragma omp parallel for schedule(static) if (count > 2000)
+#pragma omp parallel for schedule(dynamic, 256) if (count > 2000)
   for (std::int64_t i = 0; i < count; ++i) {
     body(static_cast<std::size_t>(i));
   }
@@ -27,13 +27,13 @@ double block_sum(std::size_t n, const Value& value) {
   constexpr std::size_t block = 256;
   const std::size_t blocks = (n + block - 1) / block;
   std::vector<double> part(blocks);
-  for_each_particle(blocks, [&](std::size_t b) {
+  for (std::size_t b = 0; b < blocks; ++b) {
     double sum = 0;
     for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) {
       sum += value(i);
     }
     part[b] = sum;
-  });
+  }
   double sum = 0;
   for (const double p : part) {
     sum += p;
@@ -45,10 +45,8 @@ double block_sum(std::size_t n, const Value& value) {
 template <class Value>
 double block_max(std::size_t n, double least, const Value& value) {
   double result = least;
-  const auto count = static_cast<std::int64_t>(n);
-#pragma omp parallel for schedule(static) reduction(max : result) if (count > 2000)
-  for (std::int64_t i = 0; i < count; ++i) {
-    result = std::max(result, value(static_cast<std::size_t>(i)));
+  for (std::size_t i = 0; i < n; ++i) {
+    result = std::max(result, value(i));
   }
   return result;
 }

@@ -38,8 +38,8 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   const std::size_t n = particles_.size(), with_ghosts = n + ghosts_.size() + 1;
   heat_records_.resize(with_ghosts);
   species_records_.resize(with_ghosts);
-  for (auto* field : {&conductivity_, &thermal_diffusivity_, &diffusivity_, &conducted_, &source_,
-                      &rate_, &absorptivity_}) {
+  for (auto* field :
+       {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_, &absorptivity_}) {
     field->assign(n, 0.0);
   }
   if (model_.laser || model_.surface_loss) {
@@ -58,7 +58,9 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   for (std::size_t g = 0; g < ghosts_.size(); ++g) {
     place(n + g, ghosts_[g].source, ghosts_[g].position);
   }
-  update_state();
+  for_each_particle(n, [&](std::size_t i) { refresh(i); });
+  refresh_ghosts();
+  check_numbers();
 }
 
 double Engine::total_enthalpy() const {
@@ -71,73 +73,72 @@ double Engine::total_additive_mass() const {
                    [&](std::size_t i) { return particles_.mass[i] * particles_.concentration[i]; });
 }
 
-void Engine::update_state() {
-  const std::size_t n = particles_.size();
-  for_each_particle(n, [&](std::size_t i) {
-    const double enthalpy = particles_.enthalpy[i], concentration = particles_.concentration[i];
-    const double temperature = mixture_.temperature(enthalpy, concentration);
-    particles_.temperature[i] = temperature;
-    const double liquid = mixture_.liquid_fraction(enthalpy, concentration);
-    particles_.liquid_fraction[i] = liquid;
-    particles_.peak_temperature[i] = std::max(particles_.peak_temperature[i], temperature);
-    if (liquid >= 1) {
-      particles_.melted[i] = 1;
-    }
-    conductivity_[i] = mixture_.conductivity(temperature, concentration);
-    thermal_diffusivity_[i] =
-        conductivity_[i] * particles_.volume[i] /
-        (particles_.mass[i] * mixture_.specific_heat(temperature, concentration));
-    // The liquid part of a mushy particle diffuses, so D rises continuously from the solidus on.
-    diffusivity_[i] = liquid > 0 ? liquid * diffusivity_law_(temperature) : 0;
-  });
-  const double hottest = block_max(n, 0.0, [&](std::size_t i) {
-    const double temperature = particles_.temperature[i];
-    return std::isfinite(temperature) ? temperature : std::numeric_limits<double>::infinity();
-  });
-  if (!std::isfinite(hottest)) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!std::isfinite(particles_.temperature[i])) {
-        const auto& at = particles_.position[i];
-        throw std::runtime_error(fmt::format(
-            "step {}, time {:.6g} s: the temperature of particle {} at ({:.3g}, {:.3g}, {:.3g}) um "
-            "is not a number "
-            "(enthalpy {:.6g} J/kg, concentration {:.6g}; last conducted power {:.6g} W/m3, source "
-            "{:.6g} W)",
-            steps_, time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2],
-            particles_.enthalpy[i], particles_.concentration[i], conducted_[i], source_[i]));
-      }
-    }
+/// Everything that follows from a particle's enthalpy and concentration, its record included.
+void Engine::refresh(std::size_t i) {
+  const double enthalpy = particles_.enthalpy[i], concentration = particles_.concentration[i];
+  const double temperature = mixture_.temperature(enthalpy, concentration);
+  const double liquid = mixture_.liquid_fraction(enthalpy, concentration);
+  particles_.temperature[i] = temperature;
+  particles_.liquid_fraction[i] = liquid;
+  particles_.peak_temperature[i] = std::max(particles_.peak_temperature[i], temperature);
+  if (liquid >= 1) {
+    particles_.melted[i] = 1;
   }
+  const double conductivity = mixture_.conductivity(temperature, concentration);
+  thermal_diffusivity_[i] =
+      conductivity * particles_.volume[i] /
+      (particles_.mass[i] * mixture_.specific_heat(temperature, concentration));
+  // The liquid part of a mushy particle diffuses, so D rises continuously from the solidus on.
+  diffusivity_[i] = liquid > 0 ? liquid * diffusivity_law_(temperature) : 0;
+  absorptivity_[i] = mixture_.absorptivity(concentration);
+  heat_records_[i].temperature = temperature;
+  heat_records_[i].conductivity = conductivity;
 }
 
-void Engine::fill_heat_records() {
+void Engine::refresh_ghosts() {
   const std::size_t n = particles_.size();
-  for_each_particle(n, [&](std::size_t i) {
-    heat_records_[i].temperature = particles_.temperature[i];
-    heat_records_[i].conductivity = conductivity_[i];
-  });
   for_each_particle(ghosts_.size(), [&](std::size_t g) {
     const Ghost& ghost = ghosts_[g];
     heat_records_[n + g].temperature =
         ghost.sign * particles_.temperature[ghost.source] + ghost.offset;
-    heat_records_[n + g].conductivity = conductivity_[ghost.source];
+    heat_records_[n + g].conductivity = heat_records_[ghost.source].conductivity;
   });
 }
 
+void Engine::check_numbers() const {
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (!std::isfinite(particles_.temperature[i])) {
+      const auto& at = particles_.position[i];
+      throw std::runtime_error(fmt::format(
+          "step {}, time {:.6g} s: the temperature of particle {} at ({:.3g}, {:.3g}, {:.3g}) um "
+          "is not a number "
+          "(enthalpy {:.6g} J/kg, concentration {:.6g}; last conducted power {:.6g} W/m3, source "
+          "{:.6g} W)",
+          steps_, time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2],
+          particles_.enthalpy[i], particles_.concentration[i], conducted_[i], source_[i]));
+    }
+  }
+}
+
+/// Writes the liquid particles and their images; those that were liquid before and no longer are
+/// get no diffusivity, and the others never had one.
 void Engine::fill_species_records(const std::vector<double>& concentration) {
-  const std::size_t n = particles_.size();
-  for_each_particle(n, [&](std::size_t i) {
+  for (const std::uint32_t i : liquid_) {
     species_records_[i].concentration = concentration[i];
     species_records_[i].diffusivity = diffusivity_[i];
-  });
-  for_each_particle(ghosts_.size(), [&](std::size_t g) {
+  }
+  const std::size_t n = particles_.size();
+  for (std::size_t g = 0; g < ghosts_.size(); ++g) {
     species_records_[n + g].concentration = concentration[ghosts_[g].source];
     species_records_[n + g].diffusivity = diffusivity_[ghosts_[g].source];
-  });
+  }
 }
 
 void Engine::advance_species(double dt) {
   // Only liquid particles exchange: D is zero in the solid, and the pair term with it.
+  for (const std::uint32_t i : liquid_) {
+    species_records_[i].diffusivity = 0;
+  }
   liquid_.clear();
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (diffusivity_[i] > 0) {
@@ -201,16 +202,12 @@ double Engine::step(double until) {
 
   beam_ = {};
   if (model_.laser) {
-    for_each_particle(n, [&](std::size_t i) {
-      absorptivity_[i] = mixture_.absorptivity(particles_.concentration[i]);
-    });
     // The beam stands where it is in the middle of the step.
     beam_ = model_.laser->on(time_)
                 ? irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_)
                 : LaserBudget{};
   }
   if (model_.conduction) {
-    fill_heat_records();
     conduct(heat_records_, neighbours_, kernel_, conducted_);
   }
   if (model_.species) {
@@ -219,7 +216,9 @@ double Engine::step(double until) {
   for_each_particle(n, [&](std::size_t i) {
     particles_.enthalpy[i] +=
         dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
+    refresh(i);
   });
+  refresh_ghosts();
   ledger_.absorbed += dt * beam_.absorbed;
   ledger_.reflected += dt * beam_.reflected;
   ledger_.missed += dt * beam_.missed;
@@ -227,7 +226,7 @@ double Engine::step(double until) {
   ledger_.radiated += dt * loss.radiation;
   time_ = dt == end - time_ ? end : time_ + dt;
   ++steps_;
-  update_state();
+  check_numbers();
   return dt;
 }
 

@@ -70,8 +70,9 @@ class Engine {
   double total_additive_mass() const;  ///< sum of m C, kg
 
  private:
-  void update_state();
-  void fill_heat_records();
+  void refresh(std::size_t i);
+  void refresh_ghosts();
+  void check_numbers() const;
   void fill_species_records(const std::vector<double>& concentration);
   void advance_species(double dt);
 
@@ -85,8 +86,8 @@ class Engine {
   SurfaceColumns surface_;
   std::vector<HeatRecord> heat_records_;
   std::vector<SpeciesRecord> species_records_;
-  std::vector<double> conductivity_, thermal_diffusivity_, diffusivity_, conducted_, source_, rate_,
-      absorptivity_, half_step_;
+  std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
+      half_step_;
   std::vector<std::uint32_t> liquid_;
   StepLimits limits_;
   LaserBudget beam_;
