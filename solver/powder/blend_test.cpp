@@ -60,6 +60,7 @@ TEST(Blend, HasTheMassFractionAskedForWithinOneSphere) {
   for (const double asked : {0.01, 0.05, 0.5}) {
     for (const double density : {7763., 2670.}) {
       PowderSettings s;
+      s.length_x = 300e-6;
       s.additive_mass_fraction = asked;
       s.additive.density = density;
       s.additive.size.d50 = 11.3e-6;

@@ -123,10 +123,11 @@ TEST(DropAndRoll, LeavesNoOverlapsAndEverySphereStable) {
     PowderSettings s;
     s.periodic = periodic;
     s.layer_height = 60e-6;
+    s.length_x = 300e-6;
     s.base.size.geometric_deviation = 1.5;
     s.origin_x = -100e-6;
     const PowderBed bed = generate(s);
-    ASSERT_GT(bed.spheres.size(), 4000U);
+    ASSERT_GT(bed.spheres.size(), 2000U);
     EXPECT_LT(deepest_overlap(bed, s), 1e-9);
     expect_stable(bed, s);
     EXPECT_EQ(bed.dropped_again, 0);
@@ -135,6 +136,7 @@ TEST(DropAndRoll, LeavesNoOverlapsAndEverySphereStable) {
 
 TEST(PowderBed, IsTheSameForTheSameSeedOnly) {
   PowderSettings s;
+  s.length_x = 200e-6;
   const PowderBed first = generate(s), second = generate(s);
   s.seed = 2;
   const PowderBed other = generate(s);
@@ -149,6 +151,7 @@ TEST(PowderBed, IsTheSameForTheSameSeedOnly) {
 TEST(PowderBed, LeavesNothingAboveTheLayerThatTheBladeTakes) {
   for (const char* blade : {"centre", "top"}) {
     PowderSettings s;
+    s.length_x = 300e-6;
     s.blade = blade;
     const PowderBed bed = generate(s);
     for (const Sphere& sphere : bed.spheres) {
@@ -205,7 +208,8 @@ TEST(PowderBed, ReadsItsInputWithThePapersDefaults) {
 }
 
 TEST(PowderBed, IsWrittenAsAnArtifactWithUnits) {
-  const PowderSettings s;
+  PowderSettings s;
+  s.length_x = 200e-6;
   const PowderBed bed = generate(s);
   const auto path = std::filesystem::temp_directory_path() / "meltproof_powder_test.h5";
   write_powder_bed(path, bed, Provenance{});
@@ -230,7 +234,9 @@ TEST(PowderBed, OfTenThousandSpheresTakesSeconds) {
   const PowderBed bed = generate(s);
   const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   EXPECT_GT(bed.spheres.size(), 10000U);
-  EXPECT_LT(seconds, 20);  // of processor time; 1.3 s measured, the rest is for sanitizers
+#ifdef NDEBUG
+  EXPECT_LT(seconds, 10);  // of processor time; 1.4 s measured
+#endif
   std::cout << bed.spheres.size() << " spheres in " << seconds << " s\n";
 }
 
