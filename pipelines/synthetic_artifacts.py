@@ -160,6 +160,7 @@ def linescan(path, direction):
     position = [0.25 * k for k in range(81)]
     raw = [1.0 if abs(x - 10) < 5 else 0.0 for x in position]
     seen = [math.exp(-((x - 10) / 5) ** 2) for x in position]
+    raw[-4:] = seen[-4:] = [None] * 4  # as where the line leaves the metal
     Path(path).write_text(json.dumps({
         "status": "pending", "line": {"direction": direction, "time_us": 1200.0, "spacing_um": 15.0},
         "grain": {"centre_um": [200.0, 50.0, 10.0], "edge_distance_um": 9.0, "particles": 3, "rule": "synthetic"},

@@ -2,11 +2,18 @@
 """Fig. 7 of the paper: concentration through one molten AlSi10Mg grain, in depth and across."""
 
 import argparse
+import math
 import textwrap
 
 import artifact
 import matplotlib.pyplot as plt
+import numpy as np
 import style
+
+
+def percent(shares):
+    """Shares in wt%; where there is no number (no material on the line), a gap."""
+    return [math.nan if share is None else 100 * share for share in shares]
 
 
 def plot(axes, path, letter):
@@ -23,15 +30,15 @@ def plot(axes, path, letter):
     simulated = artifact.value(scan, "simulated", path)
     position = simulated["position_um"]
     interaction = scan["interaction"]
-    axes.plot(position, [100 * c for c in simulated["concentration"]], color=style.BLACK, linestyle=":",
+    axes.plot(position, percent(simulated["concentration"]), color=style.BLACK, linestyle=":",
               linewidth=1.0, label="simulated")
-    axes.plot(position, [100 * c for c in simulated["concentration_seen"]], color=style.BLUE, linestyle="-",
-              label="simulated, as EDS would see it")
-    axes.set_ylim(0, max(1.0, 1.25 * max(100 * c for c in simulated["concentration"])))
+    axes.plot(position, percent(simulated["concentration_seen"]), color=style.BLUE,
+              linestyle="-", label="simulated, as EDS would see it")
+    axes.set_ylim(0, max(1.0, 1.25 * np.nanmax(percent(simulated["concentration"]))))
     measured = scan.get("measured")
     if measured:
-        axes.errorbar(measured["position_um"], [100 * c for c in measured["concentration"]],
-                      yerr=[100 * (u or 0) for u in measured["concentration_u"]], fmt="s", color=style.RED,
+        axes.errorbar(measured["position_um"], percent(measured["concentration"]),
+                      yerr=np.nan_to_num(percent(measured["concentration_u"])), fmt="s", color=style.RED,
                       fillstyle="none", capsize=2, label="measured")
     else:
         axes.text(0.98, 0.76, "measurement pending:\nFig. 7 is not public\nas numbers", transform=axes.transAxes,
