@@ -51,9 +51,7 @@ validate: $(REPORT)
 	@$(PYTHON) pipelines/report/results_table.py --verification $(VERIFICATION) --comparison $(COMPARISON) \
 	  --report $(REPORT)
 
-# The picture at the top of README.md: fig. 4 of the present results.
-readme-picture: docs/images/powder_and_pool.svg
-docs/images/powder_and_pool.svg: $(FIGURE_FOLDER)/fig04_powder_and_pool.svg
-	@mkdir -p $(@D)
-	@cp $< $@
-	@echo 'The picture of README.md is $@; commit it if you want to publish it.'
+# The picture at the top of README.md: fig. 4 of the present results, to be committed by hand.
+readme-picture: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 | packages
+	@$(PYTHON) pipelines/figures/fig04_powder_and_pool.py $^ --output docs/images/powder_and_pool.png
+	@echo 'The picture of README.md is docs/images/powder_and_pool.png; commit it to publish it.'

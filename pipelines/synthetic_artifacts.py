@@ -42,6 +42,11 @@ def powder(path, additive_mass_fraction=0.05, seed=1):
             put(file, name, number)
         for name, number in (("d10", 9), ("d50", 13.7), ("d90", 20)):
             put(file, name, number * MICRON, "m")
+        for name in ("program", "revision", "inputs", "libraries"):
+            content = PROVENANCE[name]
+            file.require_group("provenance").attrs[name] = content if isinstance(content, str) else json.dumps(content)
+        put(file, "provenance/threads", 1.0)
+        put(file, "provenance/wall_time", 1.0, "s")
 
 
 def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True):

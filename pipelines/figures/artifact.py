@@ -31,7 +31,7 @@ def read_json(path):
 
 def value(record, key, path):
     """record[key]; `path` names the file in the message."""
-    if not isinstance(record, dict) or key not in record:
+    if not hasattr(record, "keys") or key not in record:
         raise MissingArtifact(f"{path} has no key `{key}`, which is needed here.")
     return record[key]
 

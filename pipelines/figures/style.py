@@ -57,16 +57,20 @@ PENDING_BOX = {"boxstyle": "round,pad=0.4", "facecolor": "#f4f4f4", "edgecolor":
 
 
 def save(figure, output, title, caption):
-    """Writes the vector graphic and, beside it, its title and caption (`.json`) for the report."""
+    """Writes the vector graphic and, beside it, its title and caption (`.json`) for the report. An output that
+    ends in .png becomes a picture of pixels without words beside it, for a page such as README.md."""
     output = Path(output)
     output.parent.mkdir(parents=True, exist_ok=True)
-    partial = output.with_suffix(".svg.tmp")
-    figure.savefig(partial, format="svg", metadata={"Date": None, "Creator": "Meltproof", "Title": title})
+    partial = output.with_name(output.name + ".tmp")
+    if output.suffix == ".png":
+        figure.savefig(partial, format="png", dpi=130, metadata={"Software": None, "Title": title})
+    else:
+        figure.savefig(partial, format="svg", metadata={"Date": None, "Creator": "Meltproof", "Title": title})
+        text = json.dumps({"title": title, "caption": caption}, indent=1, ensure_ascii=False) + "\n"
+        words = output.with_suffix(".json.tmp")
+        words.write_text(text, encoding="utf-8")
+        os.replace(words, output.with_suffix(".json"))
     plt.close(figure)
-    text = json.dumps({"title": title, "caption": caption}, indent=1, ensure_ascii=False) + "\n"
-    words = output.with_suffix(".json.tmp")
-    words.write_text(text, encoding="utf-8")
-    os.replace(words, output.with_suffix(".json"))
     os.replace(partial, output)
 
 

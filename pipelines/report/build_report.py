@@ -18,7 +18,7 @@ from markupsafe import Markup
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "figures"))
-from artifact import MissingArtifact, existing, open_artifact, read_json, text, value  # noqa: E402
+from artifact import MissingArtifact, existing, open_artifact, read_json, scalar, text, value  # noqa: E402
 from errata_numbers import numbers  # noqa: E402
 
 
@@ -39,8 +39,6 @@ def percent_number(share):
 
 
 def duration(seconds):
-    if seconds is None:
-        return "–"
     if seconds < 120:
         return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s"
     return f"{seconds / 60:.1f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
@@ -93,44 +91,34 @@ def read_tracks(work):
 
 
 def provenance_of_hdf5(path):
-    """The provenance of an artifact as a dictionary, whichever way HDF5 holds it: attributes or data sets."""
+    """The provenance of an HDF5 artifact in the form of that of a JSON result."""
     with open_artifact(path, "") as file:
-        if "provenance" not in file:
-            return {}
-        group = file["provenance"]
-        found = {name: attribute for name, attribute in group.attrs.items()}
-        for name in getattr(group, "keys", list)():
-            found[name] = group[name][()]
-        if "json" in found:
-            return json.loads(text(found["json"]))
-        return {name: text(content) if isinstance(content, (bytes, str)) else content
-                for name, content in found.items()}
+        group = value(file, "provenance", path)
+        return {"program": text(group.attrs["program"]), "revision": text(group.attrs["revision"]),
+                "inputs": json.loads(text(group.attrs["inputs"])),
+                "libraries": json.loads(text(group.attrs["libraries"])),
+                "threads": int(scalar(file, "provenance/threads")),
+                "wall_time_s": scalar(file, "provenance/wall_time")}
 
 
 def collect_provenance(work, verification, comparison):
-    """One line per JSON result, and every input file with its checksum."""
-    files = [Path(verification), *sorted(Path(work).glob("track_*/result.json")),
+    """One line per artifact, every input file with its checksum, and the libraries."""
+    files = [Path(verification), *sorted(Path(work).glob("powder_*/powder.h5")),
+             *sorted(Path(work).glob("track_*/result.json")),
              *sorted(Path(work).glob("track_*/thermography/summary.json")),
              *sorted(Path(work).glob("track_*/linescan_*.json")), Path(comparison)]
     artifacts, inputs, libraries = [], {}, {}
     for path in files:
-        record = read_json(path)
-        made = record.get("provenance", {})
-        wall_time = record.get("wall_time_s", made.get("wall_time_s"))
-        artifacts.append({"path": path.as_posix(), "program": made.get("program", "–"),
-                          "revision": made.get("revision", "–"), "particles": count(record.get("particles")),
-                          "steps": count(record.get("steps")), "threads": made.get("threads", "–"),
-                          "wall_time": duration(wall_time)})
-        libraries.update(made.get("libraries", {}))
-        for entry in made.get("inputs", []):
-            inputs[entry["path"]] = entry["sha256"]
-    for path in sorted(Path(work).glob("powder_*/powder.h5")):
-        made = provenance_of_hdf5(path)
-        if made:
-            artifacts.insert(1, {"path": path.as_posix(), "program": made.get("program", "–"),
-                                 "revision": made.get("revision", "–"), "particles": "", "steps": "",
-                                 "threads": made.get("threads", "–"),
-                                 "wall_time": duration(float(made["wall_time_s"])) if "wall_time_s" in made else "–"})
+        record = read_json(path) if path.suffix == ".json" else {"provenance": provenance_of_hdf5(path)}
+        if "provenance" not in record:
+            continue  # a line scan without a grain is a sentence, no result
+        made = record["provenance"]
+        artifacts.append({"path": path.as_posix(), "program": value(made, "program", path),
+                          "revision": value(made, "revision", path), "particles": count(record.get("particles")),
+                          "steps": count(record.get("steps")), "threads": made["threads"],
+                          "wall_time": duration(record.get("wall_time_s", made["wall_time_s"]))})
+        libraries.update(made["libraries"])
+        inputs.update({entry["path"]: entry["sha256"] for entry in made["inputs"]})
     return artifacts, [{"path": path, "sha256": sum_} for path, sum_ in sorted(inputs.items())], libraries
 
 
