@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -101,6 +102,17 @@ double Mixture::specific_heat(double temperature, double concentration) const {
   const double rise = weighted(base_enthalpy_[i + 1] - base_enthalpy_[i],
                                additive_enthalpy_[i + 1] - additive_enthalpy_[i], concentration);
   return rise / (knots_[i + 1] - knots_[i]);
+}
+
+double Mixture::smallest_specific_heat_near(double temperature, double concentration) const {
+  const std::size_t here = piece_of(knots_, temperature);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = here > 0 ? here - 1 : 0; i <= std::min(here + 1, knots_.size() - 2); ++i) {
+    const double rise = weighted(base_enthalpy_[i + 1] - base_enthalpy_[i],
+                                 additive_enthalpy_[i + 1] - additive_enthalpy_[i], concentration);
+    smallest = std::min(smallest, rise / (knots_[i + 1] - knots_[i]));
+  }
+  return smallest;
 }
 
 double Mixture::solidus(double concentration) const {

@@ -116,6 +116,10 @@ class Mixture {
   /// The exact inverse of enthalpy() in T: no iteration.
   double temperature(double enthalpy, double concentration) const;
   double specific_heat(double temperature, double concentration) const;
+  /// The smallest specific heat on the linear piece of the enthalpy that holds the temperature and
+  /// on the pieces next to it, J kg-1 K-1. A melting particle may leave its range within one step,
+  /// so a stable step goes by this one and not by the large apparent specific heat of melting.
+  double smallest_specific_heat_near(double temperature, double concentration) const;
   /// Mass-weighted solidus and liquidus, K.
   double solidus(double concentration) const;
   double liquidus(double concentration) const;

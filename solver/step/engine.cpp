@@ -87,7 +87,7 @@ void Engine::refresh(std::size_t i) {
   const double conductivity = mixture_.conductivity(temperature, concentration);
   thermal_diffusivity_[i] =
       conductivity * particles_.volume[i] /
-      (particles_.mass[i] * mixture_.specific_heat(temperature, concentration));
+      (particles_.mass[i] * mixture_.smallest_specific_heat_near(temperature, concentration));
   // The liquid part of a mushy particle diffuses, so D rises continuously from the solidus on.
   diffusivity_[i] = liquid > 0 ? liquid * diffusivity_law_(temperature) : 0;
   absorptivity_[i] = mixture_.absorptivity(concentration);

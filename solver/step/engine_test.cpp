@@ -119,6 +119,23 @@ TEST(Engine, AnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
+// A solid exactly at its melting point has the huge apparent specific heat of melting: a step
+// chosen by it overheats the first particle of the wall without bound.
+TEST(Engine, MeltingFromRestNeverOvershootsTheWall) {
+  VerificationCase c;
+  c.kind = "stefan";
+  c.length = 100e-6;
+  c.diffusivity = 5.5e-6;
+  for (const double stefan : {0.1, 0.5, 1.0}) {
+    c.stefan = stefan;
+    const auto run = run_case(c, 4e-6);
+    for (const double temperature : run.value) {
+      ASSERT_LT(temperature, 700) << "the wall is at 700 K, St = " << stefan;
+      ASSERT_GE(temperature, 600 * (1 - 1e-12)) << "nothing is colder than the melting point";
+    }
+  }
+}
+
 TEST(Engine, ANumberThatIsNoneStopsTheRunAndNamesTheParticle) {
   Engine good = small_track();
   Particles particles = good.particles();

@@ -58,9 +58,9 @@ SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& co
                                            mixture.molar_mass(concentration) / gas_constant;
       const double slope = 4 * (evaporated * boltzmann_temperature / (temperature * temperature) +
                                 4 * radiated / temperature);
-      budget.fastest_rate =
-          std::max(budget.fastest_rate,
-                   slope / (particles.mass[i] * mixture.specific_heat(temperature, concentration)));
+      budget.fastest_rate = std::max(
+          budget.fastest_rate, slope / (particles.mass[i] * mixture.smallest_specific_heat_near(
+                                                                temperature, concentration)));
     }
     power[i] -= evaporated + radiated;
     budget.evaporation += evaporated;
