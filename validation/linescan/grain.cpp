@@ -86,12 +86,16 @@ std::vector<Grain> find_grains(const SolidifiedTrack& track) {
     bool any = false;
     for (std::size_t i = 0; i < track.position.size(); ++i) {
       const Point& p = track.position[i];
-      if (track.melted[i] != 0 && std::abs(p[0] - grain.centre[0]) <= track.spacing) {
+      // The pool is where base metal melted: a grain of the additive melts 800 K earlier, also
+      // alone in the loose powder.
+      if (track.melted[i] != 0 && track.origin[i] != 2 &&
+          std::abs(p[0] - grain.centre[0]) <= track.spacing) {
         grain.edge_low = any ? std::min(grain.edge_low, p[1]) : p[1];
         grain.edge_high = any ? std::max(grain.edge_high, p[1]) : p[1];
         any = true;
       }
     }
+    grain.beside_pool = any;
     grains.push_back(grain);
   }
   return grains;
@@ -101,7 +105,7 @@ std::optional<Grain> grain_at_pool_edge(const SolidifiedTrack& track) {
   std::optional<Grain> best;
   for (const auto& grain : find_grains(track)) {
     const bool nearer = !best || std::abs(grain.edge_distance()) < std::abs(best->edge_distance());
-    if (grain.melted >= 0.5 && nearer) {
+    if (grain.melted >= 0.5 && grain.beside_pool && nearer) {
       best = grain;
     }
   }

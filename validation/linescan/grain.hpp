@@ -13,7 +13,8 @@ struct Grain {
   Point centre{};             ///< m, mean of its particles in the last snapshot
   std::size_t particles = 0;  ///< particles that it is made of
   double melted = 0;          ///< share of them that were ever liquid
-  double edge_low = 0;        ///< y of the molten zone's edges at the grain, m
+  bool beside_pool = false;   ///< whether base metal melted at its x
+  double edge_low = 0;        ///< y of the edges of the molten base metal at the grain, m
   double edge_high = 0;
   std::int64_t first_identity = 0;  ///< smallest identity, which names the grain
   /// Distance of its centre from the nearer edge, m; negative outside the molten zone.

@@ -108,6 +108,9 @@ SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, c
   }
   const double volume = std::pow(track.spacing, 3);
   const double reach = 3 * track.smoothing_length;
+  // Of the sphere as large as a particle: a grain of one particle fills less than half of its
+  // kernel, and is metal all the same.
+  const double particle_radius = std::cbrt(3 / (4 * std::numbers::pi)) * track.spacing;
   const auto near = near_line(track, start, end, reach);
   const auto intervals = static_cast<std::size_t>(std::lround(length / step));
   SimulatedProfile profile{start, end, {}, {}};
@@ -119,12 +122,15 @@ SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, c
       at[d] = start[d] + part * (end[d] - start[d]);
     }
     double sum = 0, weight = 0;
+    bool inside = false;
     for (const std::size_t j : near) {
-      const double w = volume * kernel(distance(at, track.position[j]), track.smoothing_length);
+      const double r = distance(at, track.position[j]);
+      const double w = volume * kernel(r, track.smoothing_length);
+      inside = inside || r <= particle_radius;
       sum += w * track.concentration[j];
       weight += w;
     }
-    const bool material = weight >= 0.5;
+    const bool material = inside || weight >= 0.5;
     found = found || material;
     profile.position.push_back(part * length);
     profile.concentration.push_back(material ? sum / weight
