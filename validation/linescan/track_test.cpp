@@ -60,6 +60,33 @@ TEST(GrainRule, PicksTheMoltenGrainNearestToTheEdge) {
   EXPECT_EQ(grain->melted, 1);
 }
 
+/// One particle of the additive that melted on its own, in loose powder beside the molten zone.
+SolidifiedTrack with_a_loose_grain() {
+  auto track = synthetic_track([](const Point&) { return 0.0; }, three_grains);
+  const Point loose{10e-6, 38e-6, 11e-6};
+  track.position.push_back(loose);
+  track.first_position.push_back(loose);
+  track.identity.push_back(static_cast<std::int64_t>(track.identity.size()));
+  track.origin.push_back(2);
+  track.melted.push_back(1);
+  track.concentration.push_back(1);
+  return track;
+}
+
+// AlSi10Mg melts 800 K before 316L, so a grain that melted need not have been in the pool.
+TEST(GrainRule, PassesOverAGrainThatMeltedAloneInLoosePowder) {
+  const auto grain = grain_at_pool_edge(with_a_loose_grain());
+  ASSERT_TRUE(grain);
+  EXPECT_NEAR(grain->centre[1], 22e-6, 1e-12);
+}
+
+TEST(SampleLine, ALoneParticleIsMetalAndTheVoidBesideItIsNot) {
+  const auto profile =
+      sample_line(with_a_loose_grain(), {10e-6, 38e-6, 11e-6}, {10e-6, 28e-6, 11e-6}, 1e-6);
+  EXPECT_EQ(profile.concentration.front(), 1);
+  EXPECT_TRUE(std::isnan(profile.concentration[3]));
+}
+
 TEST(GrainRule, RunsDownOrTowardsTheMiddle) {
   const auto grain =
       *grain_at_pool_edge(synthetic_track([](const Point&) { return 0.0; }, three_grains));
