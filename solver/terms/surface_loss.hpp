@@ -25,8 +25,9 @@ struct SurfaceLossBudget {
 /// **Evaporation**: m' = c_s p_sat sqrt(M/(2 pi R T)) with p_sat = p_a exp[L_v M/R (1/T_b - 1/T)];
 /// the heat taken is m' L_v. c_s = 0.82 is the sticking share that Khairallah et al. (2016) apply
 /// to the evaporated flux; it is applied here once and is not part of any recoil pressure. Returns
-/// W m-2. The mass lost (about 1e-3 of the melt over a track) is not removed from the particles in
-/// this version.
+/// W m-2. The mass lost is not removed from the particles in this version. It is not small: without
+/// recoil and flow half of the absorbed power evaporates, at 10 um spacing the mass of half the
+/// molten track (evaporated energy over L_v against a half-elliptic track of its width and depth).
 double evaporation_flux(double temperature, double concentration, const Mixture& mixture,
                         double ambient_pressure);
 
