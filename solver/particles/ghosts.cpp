@@ -10,7 +10,7 @@ std::vector<Ghost> make_ghosts(const Particles& particles, const Domain& domain,
   std::vector<Ghost> all;
   all.reserve(particles.size() * 2);
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
-    all.push_back({i, particles.position[i], 1, 0});
+    all.push_back({.source = i, .position = particles.position[i], .sign = 1, .offset = 0});
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double lower = domain.lower[axis], upper = domain.upper[axis], length = upper - lower;
@@ -22,6 +22,7 @@ std::vector<Ghost> make_ghosts(const Particles& particles, const Domain& domain,
         for (std::size_t i = 0; i < count && k != 0; ++i) {
           Ghost image = all[i];
           image.position[axis] += k * length;
+          image.shift[axis] += k * length;
           if (inside(image.position[axis])) {
             all.push_back(image);
           }
@@ -38,6 +39,8 @@ std::vector<Ghost> make_ghosts(const Particles& particles, const Domain& domain,
       for (std::size_t i = 0; i < count; ++i) {
         Ghost image = all[i];
         image.position[axis] = 2 * plane - image.position[axis];
+        image.scale[axis] = -image.scale[axis];
+        image.shift[axis] = 2 * plane - image.shift[axis];
         if (!inside(image.position[axis])) {
           continue;
         }

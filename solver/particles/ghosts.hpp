@@ -30,6 +30,17 @@ struct Ghost {
   std::uint32_t source;
   Vector position;
   double sign, offset;
+  /// position = scale * position of the source + shift, axis by axis; scale is 1 or, mirrored, -1.
+  Vector scale{1, 1, 1}, shift{};
+
+  /// Where the image stands once its source has moved to `at`.
+  Vector image_of(const Vector& at) const {
+    return {scale[0] * at[0] + shift[0], scale[1] * at[1] + shift[1], scale[2] * at[2] + shift[2]};
+  }
+  /// The image of a velocity or another vector of the source.
+  Vector mirrored(const Vector& v) const {
+    return {scale[0] * v[0], scale[1] * v[1], scale[2] * v[2]};
+  }
 };
 
 /// All images within `reach` of the domain, axis after axis, so that edges and corners are filled

@@ -34,14 +34,21 @@ void Particles::add(std::int64_t id, const Vector& at, double m, double v, doubl
                     Origin from) {
   identity.push_back(id);
   position.push_back(at);
+  velocity.push_back({});
   mass.push_back(m);
   volume.push_back(v);
+  density.push_back(m / v);
   enthalpy.push_back(h);
   concentration.push_back(c);
   temperature.push_back(0);
   liquid_fraction.push_back(0);
   peak_temperature.push_back(0);
+  melt_time.push_back(-1);
+  freeze_time.push_back(-1);
+  cooling_rate.push_back(0);
+  freeze_gradient.push_back(0);
   origin.push_back(from);
+  phase.push_back(Phase::solid);
   melted.push_back(0);
 }
 
@@ -68,14 +75,21 @@ void sort_in_space(Particles& particles, double cell_size) {
   });
   permute(particles.identity, order);
   permute(particles.position, order);
+  permute(particles.velocity, order);
   permute(particles.mass, order);
   permute(particles.volume, order);
+  permute(particles.density, order);
   permute(particles.enthalpy, order);
   permute(particles.concentration, order);
   permute(particles.temperature, order);
   permute(particles.liquid_fraction, order);
   permute(particles.peak_temperature, order);
+  permute(particles.melt_time, order);
+  permute(particles.freeze_time, order);
+  permute(particles.cooling_rate, order);
+  permute(particles.freeze_gradient, order);
   permute(particles.origin, order);
+  permute(particles.phase, order);
   permute(particles.melted, order);
 }
 

@@ -156,6 +156,29 @@ TEST(Ghosts, ATemperatureFaceReflectsAboutItsTemperature) {
   EXPECT_EQ(ghosts[0].sign * 600 + ghosts[0].offset, 800);
 }
 
+TEST(Ghosts, AnImageFollowsItsSource) {
+  Particles particles;
+  particles.spacing = 1;
+  particles.add(0, {0.5, 3.25, 3.5}, 1, 1, 0, 0, Origin::plate);
+  Domain domain;
+  domain.upper = {4, 4, 4};
+  domain.face = {{{Face::mirror, Face::open}, {Face::periodic, Face::periodic}, {}}};
+  const Vector moved{0.7, 3.5, 3.1}, velocity{1, 2, 3};
+  int mirrored = 0, both = 0;
+  for (const Ghost& ghost : make_ghosts(particles, domain, 3)) {
+    EXPECT_EQ(ghost.image_of(particles.position[0]), ghost.position);
+    const bool reflected = ghost.scale[0] < 0, wrapped = ghost.shift[1] != 0;
+    const Vector at = ghost.image_of(moved), v = ghost.mirrored(velocity);
+    EXPECT_DOUBLE_EQ(at[0], reflected ? -0.7 : 0.7);
+    EXPECT_DOUBLE_EQ(at[1], 3.5 + ghost.shift[1]);
+    EXPECT_EQ(v, (Vector{reflected ? -1.0 : 1.0, 2, 3}));
+    mirrored += reflected ? 1 : 0;
+    both += reflected && wrapped ? 1 : 0;
+  }
+  EXPECT_GT(mirrored, 0);
+  EXPECT_GT(both, 0);
+}
+
 TEST(SpaceOrder, DependsOnTheParticlesAlone) {
   Particles forward = random_particles(300, 1.0, 9), backward;
   backward.spacing = forward.spacing;
