@@ -10,20 +10,89 @@ namespace {
 
 constexpr double gas_constant = 8.31446261815324;    // J mol-1 K-1, CODATA 2018
 constexpr double stefan_boltzmann = 5.670374419e-8;  // W m-2 K-4, CODATA 2018
+constexpr double recoil_share = 0.54;                // of the saturation pressure, Knight (1979)
+
+/// What a square metre gives off, and how fast that rises with its temperature.
+struct LossPerArea {
+  double mass = 0, evaporation = 0, radiation = 0, convection = 0;  ///< kg s-1 m-2, W m-2
+  double slope = 0;                                                 ///< W m-2 K-1
+
+  double total() const { return evaporation + radiation + convection; }
+};
+
+LossPerArea loss_per_area(double temperature, double concentration, const Mixture& mixture,
+                          const SurfaceLossSettings& settings) {
+  LossPerArea loss;
+  // Below 1000 K the vapour pressure of every alloy here is nil and the exponential not worth its
+  // time.
+  if (settings.evaporation && temperature > 1000) {
+    loss.mass =
+        evaporation_mass_flux(temperature, concentration, mixture, settings.ambient_pressure);
+    loss.evaporation = evaporation_flux(temperature, concentration, mixture,
+                                        settings.ambient_pressure, settings.vapour_heat);
+  }
+  if (settings.radiation) {
+    loss.radiation = radiation_flux(temperature, mixture.emissivity(concentration),
+                                    settings.ambient_temperature);
+  }
+  loss.convection =
+      settings.heat_transfer_coefficient * (temperature - settings.ambient_temperature);
+  // The vapour pressure's exponential rules evaporation, T^4 rules radiation.
+  const double boltzmann_temperature = mixture.latent_heat_vaporisation(concentration) *
+                                       mixture.molar_mass(concentration) / gas_constant;
+  loss.slope = loss.evaporation * boltzmann_temperature / (temperature * temperature) +
+               4 * loss.radiation / temperature + settings.heat_transfer_coefficient;
+  return loss;
+}
+
+void add_loss(const LossPerArea& loss, double area, std::uint32_t i, SurfaceLossBudget& budget,
+              std::vector<double>& power) {
+  power[i] -= area * loss.total();
+  budget.evaporation += area * loss.evaporation;
+  budget.radiation += area * loss.radiation;
+  budget.convection += area * loss.convection;
+  budget.mass_rate += area * loss.mass;
+}
+
+void limit_rate(const Particles& particles, std::uint32_t i, const Mixture& mixture, double slope,
+                SurfaceLossBudget& budget) {
+  if (slope > 0) {
+    budget.fastest_rate = std::max(
+        budget.fastest_rate,
+        slope / (particles.mass[i] * mixture.smallest_specific_heat_near(
+                                         particles.temperature[i], particles.concentration[i])));
+  }
+}
 
 }  // namespace
 
+double saturation_pressure(double temperature, double concentration, const Mixture& mixture,
+                           double ambient_pressure) {
+  const double boltzmann_temperature = mixture.latent_heat_vaporisation(concentration) *
+                                       mixture.molar_mass(concentration) / gas_constant;
+  return ambient_pressure *
+         std::exp(boltzmann_temperature * (1 / mixture.boiling(concentration) - 1 / temperature));
+}
+
+double recoil_pressure(double temperature, double concentration, const Mixture& mixture,
+                       double ambient_pressure) {
+  return recoil_share * saturation_pressure(temperature, concentration, mixture, ambient_pressure);
+}
+
+double evaporation_mass_flux(double temperature, double concentration, const Mixture& mixture,
+                             double ambient_pressure) {
+  return mixture.sticking(concentration) *
+         saturation_pressure(temperature, concentration, mixture, ambient_pressure) *
+         std::sqrt(mixture.molar_mass(concentration) /
+                   (2 * std::numbers::pi * gas_constant * temperature));
+}
+
 double evaporation_flux(double temperature, double concentration, const Mixture& mixture,
-                        double ambient_pressure) {
-  const double molar_mass = mixture.molar_mass(concentration);
-  const double latent_heat = mixture.latent_heat_vaporisation(concentration);
-  const double pressure =
-      ambient_pressure * std::exp(latent_heat * molar_mass / gas_constant *
-                                  (1 / mixture.boiling(concentration) - 1 / temperature));
-  const double mass_flux =
-      mixture.sticking(concentration) * pressure *
-      std::sqrt(molar_mass / (2 * std::numbers::pi * gas_constant * temperature));
-  return mass_flux * latent_heat;
+                        double ambient_pressure, VapourHeat heat) {
+  const double per_mass =
+      mixture.latent_heat_vaporisation(concentration) +
+      (heat == VapourHeat::latent ? 0 : mixture.enthalpy(temperature, concentration));
+  return evaporation_mass_flux(temperature, concentration, mixture, ambient_pressure) * per_mass;
 }
 
 double radiation_flux(double temperature, double emissivity, double ambient_temperature) {
@@ -40,31 +109,26 @@ SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& co
     if (i == SurfaceColumns::none) {
       continue;
     }
-    const double temperature = particles.temperature[i], concentration = particles.concentration[i];
-    // Below 1000 K the vapour pressure of either alloy is nil and the exponential not worth its
-    // time.
-    const double evaporated = settings.evaporation && temperature > 1000
-                                  ? area * evaporation_flux(temperature, concentration, mixture,
-                                                            settings.ambient_pressure)
-                                  : 0;
-    const double radiated =
-        settings.radiation ? area * radiation_flux(temperature, mixture.emissivity(concentration),
-                                                   settings.ambient_temperature)
-                           : 0;
-    if (evaporated + radiated > 0) {
-      // d(loss)/dT: the vapour pressure's exponential rules evaporation, T^4 rules radiation. A
-      // particle has four columns.
-      const double boltzmann_temperature = mixture.latent_heat_vaporisation(concentration) *
-                                           mixture.molar_mass(concentration) / gas_constant;
-      const double slope = 4 * (evaporated * boltzmann_temperature / (temperature * temperature) +
-                                4 * radiated / temperature);
-      budget.fastest_rate = std::max(
-          budget.fastest_rate, slope / (particles.mass[i] * mixture.smallest_specific_heat_near(
-                                                                temperature, concentration)));
+    const LossPerArea loss =
+        loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
+    add_loss(loss, area, i, budget, power);
+    // A particle has four columns.
+    limit_rate(particles, i, mixture, 4 * area * loss.slope, budget);
+  }
+  return budget;
+}
+
+SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<double>& area,
+                            const Mixture& mixture, const SurfaceLossSettings& settings,
+                            std::vector<double>& power) {
+  SurfaceLossBudget budget;
+  for (std::uint32_t i = 0; i < particles.size(); ++i) {
+    if (area[i] > 0) {
+      const LossPerArea loss =
+          loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
+      add_loss(loss, area[i], i, budget, power);
+      limit_rate(particles, i, mixture, area[i] * loss.slope, budget);
     }
-    power[i] -= evaporated + radiated;
-    budget.evaporation += evaporated;
-    budget.radiation += radiated;
   }
   return budget;
 }

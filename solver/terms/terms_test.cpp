@@ -158,6 +158,54 @@ TEST(SurfaceLoss, EvaporationAtTheBoilingPointIsTheHertzKnudsenFlux) {
               1e-6 * mass_flux * steel.latent_heat_vaporisation);
 }
 
+TEST(SurfaceLoss, RecoilIsItsShareOfTheFullSaturationPressure) {
+  const Mixture mixture = paper_mixture();
+  EXPECT_NEAR(saturation_pressure(3073, 0, mixture, 101325), 101325, 1e-6);
+  EXPECT_NEAR(recoil_pressure(3073, 0, mixture, 101325), 0.54 * 101325, 1e-6);
+  // Clausius-Clapeyron: d ln p/d(1/T) = -L_v M/R.
+  const double slope = std::log(saturation_pressure(3600, 0, mixture, 101325) /
+                                saturation_pressure(2800, 0, mixture, 101325)) /
+                       (1.0 / 2800 - 1.0 / 3600);
+  EXPECT_NEAR(slope, mixture.latent_heat_vaporisation(0) * 57.96e-3 / 8.314462618, 1e-6 * slope);
+}
+
+TEST(SurfaceLoss, TheVapourTakesItsSensibleHeatOnlyWhenAsked) {
+  const Mixture mixture = paper_mixture();
+  const double flux = evaporation_mass_flux(3300, 0.1, mixture, 101325);
+  EXPECT_DOUBLE_EQ(evaporation_flux(3300, 0.1, mixture, 101325),
+                   flux * mixture.latent_heat_vaporisation(0.1));
+  EXPECT_NEAR(evaporation_flux(3300, 0.1, mixture, 101325, VapourHeat::latent_and_sensible),
+              flux * (mixture.latent_heat_vaporisation(0.1) + mixture.enthalpy(3300, 0.1)),
+              1e-9 * flux * mixture.latent_heat_vaporisation(0.1));
+}
+
+TEST(SurfaceLoss, AFlatSurfaceLosesTheSameByColumnsAndByArea) {
+  const Mixture mixture = paper_mixture();
+  const double dx = 10e-6;
+  Particles particles = plate(6, 4, dx);
+  std::vector<double> area(particles.size(), 0.0);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles.temperature[i] = 2900 + 50 * static_cast<double>(i % 7);
+    particles.concentration[i] = 0.02 * static_cast<double>(i % 3);
+    area[i] = particles.position[i][2] > -dx ? dx * dx : 0;
+  }
+  const SurfaceLossSettings settings{.heat_transfer_coefficient = 80};
+  const auto columns = find_surface(particles, {0, 0, 0}, {6 * dx, 4 * dx, 0});
+  std::vector<double> by_columns(particles.size(), 0.0), by_area(particles.size(), 0.0);
+  const SurfaceLossBudget one = lose_heat(particles, columns, mixture, settings, by_columns);
+  const SurfaceLossBudget two = lose_heat(particles, area, mixture, settings, by_area);
+  double lost = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    EXPECT_NEAR(by_columns[i], by_area[i], 1e-12 * std::abs(by_area[i]));
+    lost -= by_area[i];
+  }
+  EXPECT_NEAR(two.evaporation + two.radiation + two.convection, lost, 1e-12 * lost);
+  EXPECT_NEAR(one.convection, two.convection, 1e-12 * two.convection);
+  EXPECT_NEAR(one.mass_rate, two.mass_rate, 1e-12 * two.mass_rate);
+  EXPECT_NEAR(one.fastest_rate, two.fastest_rate, 1e-12 * two.fastest_rate);
+  EXPECT_GT(two.convection, 0);
+}
+
 // Paper errata 14: with the printed molar mass of AlSi10Mg, 332.14 g/mol, the exponent is twelve
 // times larger, and far from the boiling point the vapour pressure is off by orders of magnitude.
 TEST(SurfaceLoss, ThePrintedMolarMassOfTheAdditiveBlowsUp) {
