@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "solver/particles/block_sum.hpp"
 #include "solver/particles/lanes.hpp"
 
 namespace meltproof::solver {
@@ -53,72 +55,162 @@ struct CellGrid {
   std::size_t cell(const std::array<std::int64_t, 3>& c) const {
     return static_cast<std::size_t>((c[2] * count[1] + c[1]) * count[0] + c[0]);
   }
+  /// Calls visit(j) for the members of the cell of `p` and the cells around it.
+  template <class Visit>
+  void around(const Vector& p, const Visit& visit) const {
+    const auto home = of(p);
+    for (std::int64_t cz = std::max<std::int64_t>(0, home[2] - 1);
+         cz <= std::min(count[2] - 1, home[2] + 1); ++cz) {
+      for (std::int64_t cy = std::max<std::int64_t>(0, home[1] - 1);
+           cy <= std::min(count[1] - 1, home[1] + 1); ++cy) {
+        // Cells along x follow each other in memory, so three of them are one run.
+        const std::size_t low = cell({std::max<std::int64_t>(0, home[0] - 1), cy, cz}),
+                          high = cell({std::min(count[0] - 1, home[0] + 1), cy, cz});
+        for (std::uint32_t k = first[low]; k < first[high + 1]; ++k) {
+          visit(member[k]);
+        }
+      }
+    }
+  }
 };
 
-}  // namespace
-
-double NeighbourList::mean_neighbours() const {
-  const auto real =
-      std::count_if(index.begin(), index.end(), [&](std::uint32_t j) { return j != void_index; });
-  return first.size() > 1 ? static_cast<double>(real) / static_cast<double>(first.size() - 1) : 0;
-}
-
-NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              double reach) {
+std::vector<Vector> all_points(const Particles& particles, const std::vector<Ghost>& ghosts) {
   std::vector<Vector> points(particles.position);
   for (const auto& ghost : ghosts) {
     points.push_back(ghost.position);
   }
-  const CellGrid grid(points, reach);
-  const auto n = static_cast<std::int64_t>(particles.size());
-  NeighbourList list;
-  list.reach = reach;
-  list.void_index = static_cast<std::uint32_t>(points.size());
-  list.first.assign(particles.size() + 1, 0);
-  // Blocks are built apart and joined, so that the result does not depend on the number of threads.
-  constexpr std::int64_t block = 512;
+  return points;
+}
+
+double squared_distance(const Vector& a, const Vector& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return x * x + y * y + z * z;
+}
+
+/// Appends the lists of `members` to list.index. Blocks are built apart and joined, so that the
+/// result does not depend on the number of threads. @param listed (i, j, squared distance) -> bool.
+template <class Listed>
+void append_lists(NeighbourList& list, const CellGrid& grid, const std::vector<Vector>& points,
+                  const std::vector<std::uint32_t>& members, const Listed& listed) {
+  constexpr std::int64_t block = 256;
+  const auto n = static_cast<std::int64_t>(members.size());
   const std::int64_t blocks = (n + block - 1) / block;
   std::vector<std::vector<std::uint32_t>> part(static_cast<std::size_t>(blocks));
 #pragma omp parallel for schedule(dynamic, 1)
   for (std::int64_t b = 0; b < blocks; ++b) {
     auto& out = part[static_cast<std::size_t>(b)];
+    out.reserve(static_cast<std::size_t>(block) * 128);
     for (std::int64_t at = b * block; at < std::min(n, (b + 1) * block); ++at) {
-      const auto i = static_cast<std::size_t>(at);
+      const std::uint32_t i = members[static_cast<std::size_t>(at)];
       const std::size_t begin = out.size();
-      const auto home = grid.of(points[i]);
-      for (std::int64_t cz = std::max<std::int64_t>(0, home[2] - 1);
-           cz <= std::min(grid.count[2] - 1, home[2] + 1); ++cz) {
-        for (std::int64_t cy = std::max<std::int64_t>(0, home[1] - 1);
-             cy <= std::min(grid.count[1] - 1, home[1] + 1); ++cy) {
-          for (std::int64_t cx = std::max<std::int64_t>(0, home[0] - 1);
-               cx <= std::min(grid.count[0] - 1, home[0] + 1); ++cx) {
-            const std::size_t c = grid.cell({cx, cy, cz});
-            for (std::uint32_t k = grid.first[c]; k < grid.first[c + 1]; ++k) {
-              const std::uint32_t j = grid.member[k];
-              const double x = points[i][0] - points[j][0], y = points[i][1] - points[j][1],
-                           z = points[i][2] - points[j][2];
-              if (j != i && x * x + y * y + z * z < reach * reach) {
-                out.push_back(j);
-              }
-            }
-          }
+      grid.around(points[i], [&](std::uint32_t j) {
+        if (j != i && listed(i, j, squared_distance(points[i], points[j]))) {
+          out.push_back(j);
         }
-      }
+      });
       std::sort(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end());
       while ((out.size() - begin) % lane_count != 0) {
         out.push_back(list.void_index);
       }
-      list.first[i + 1] = out.size() - begin;
+      list.first[i] = begin;  // within the block, for now
+      list.last[i] = out.size();
     }
   }
-  for (std::size_t i = 1; i < list.first.size(); ++i) {
-    list.first[i] += list.first[i - 1];
+  for (std::int64_t b = 0; b < blocks; ++b) {
+    const std::size_t offset = list.index.size();
+    const auto& out = part[static_cast<std::size_t>(b)];
+    list.index.insert(list.index.end(), out.begin(), out.end());
+    for (std::int64_t at = b * block; at < std::min(n, (b + 1) * block); ++at) {
+      const std::uint32_t i = members[static_cast<std::size_t>(at)];
+      list.first[i] += offset;
+      list.last[i] += offset;
+    }
   }
-  list.index.reserve(list.first.back());
-  for (const auto& piece : part) {
-    list.index.insert(list.index.end(), piece.begin(), piece.end());
+}
+
+}  // namespace
+
+double NeighbourList::mean_neighbours() const {
+  std::size_t real = 0;
+  for (std::size_t i = 0; i < last.size(); ++i) {
+    for (std::size_t k = first[i]; k < last[i]; ++k) {
+      real += index[k] != void_index ? 1U : 0U;
+    }
   }
+  return last.empty() ? 0 : static_cast<double>(real) / static_cast<double>(last.size());
+}
+
+NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
+                              double reach) {
+  const std::vector<Vector> points = all_points(particles, ghosts);
+  const CellGrid grid(points, reach);
+  NeighbourList list;
+  list.reach = reach;
+  list.void_index = static_cast<std::uint32_t>(points.size());
+  list.first.assign(particles.size() + 1, 0);
+  list.last.assign(particles.size(), 0);
+  std::vector<std::uint32_t> everyone(particles.size());
+  std::iota(everyone.begin(), everyone.end(), 0U);
+  append_lists(list, grid, points, everyone,
+               [&](std::uint32_t, std::uint32_t, double r2) { return r2 < reach * reach; });
+  list.first.back() = list.index.size();
   return list;
+}
+
+void MovingNeighbours::build(const Particles& particles, const std::vector<Ghost>& ghosts,
+                             const std::vector<std::uint8_t>& mobile) {
+  list_.index.clear();
+  list_.first.assign(particles.size() + 1, 0);
+  list_.last.assign(particles.size(), 0);
+  list_.reach = support_ + skin_;
+  make(particles, ghosts, mobile, true);
+}
+
+void MovingNeighbours::rebuild(const Particles& particles, const std::vector<Ghost>& ghosts,
+                               const std::vector<std::uint8_t>& mobile) {
+  // Images come and go, and with them the indices in everybody's list.
+  make(particles, ghosts, mobile, !ghosts.empty());
+}
+
+void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>& ghosts,
+                            const std::vector<std::uint8_t>& mobile, bool all) {
+  const double near = support_ * support_, far = (support_ + skin_) * (support_ + skin_);
+  const std::vector<Vector> points = all_points(particles, ghosts);
+  const std::size_t n = particles.size();
+  std::vector<std::uint8_t> moves(mobile);
+  for (const auto& ghost : ghosts) {
+    moves.push_back(mobile[ghost.source]);
+  }
+  const CellGrid grid(points, support_ + skin_);
+  list_.void_index = static_cast<std::uint32_t>(points.size());
+  if (all) {
+    kept_ = 0;
+    touched_.assign(n, 0);
+  }
+  for_each_particle(points.size(), [&](std::size_t i) {
+    if (moves[i] == 0) {
+      return;
+    }
+    grid.around(points[i], [&](std::uint32_t j) {
+      if (j < n && squared_distance(points[i], points[j]) < far) {
+#pragma omp atomic write
+        touched_[j] = 1;
+      }
+    });
+  });
+  remade_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (all || touched_[i] != 0) {
+      remade_.push_back(i);
+    }
+  }
+  list_.index.resize(kept_);
+  append_lists(list_, grid, points, remade_, [&](std::uint32_t i, std::uint32_t j, double r2) {
+    return r2 < near || (r2 < far && (moves[i] != 0 || moves[j] != 0));
+  });
+  if (all) {
+    kept_ = list_.index.size();
+  }
 }
 
 }  // namespace meltproof::solver

@@ -15,8 +15,9 @@ namespace meltproof::solver {
 /// list is in increasing index, that is in space-filling order, and padded with the void to whole
 /// lanes.
 struct NeighbourList {
-  std::vector<std::size_t>
-      first;  ///< size n + 1: list of i is index[first[i]] to index[first[i+1]]
+  std::vector<std::size_t> first;  ///< list of i begins at index[first[i]]; size n + 1
+  std::vector<std::size_t> last;   ///< and ends before index[last[i]]; size n. Lists made in one go
+                                   ///< follow each other: last[i] == first[i + 1]
   std::vector<std::uint32_t> index;
   std::uint32_t void_index = 0;
   double reach = 0;  ///< m, the largest distance listed
@@ -28,6 +29,40 @@ struct NeighbourList {
 /// move.
 NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
                               double reach);
+
+/// **Verlet lists of particles of which a few move.** A pair is listed up to `support` if both
+/// stand still and up to `support + skin` if either may move, so lists stay right until the two
+/// fastest particles together have moved by the skin. rebuild() remakes only the lists near moving
+/// particles; the others, which cannot have changed, stay.
+class MovingNeighbours {
+ public:
+  /// @param support of the kernel, m; @param skin m.
+  MovingNeighbours(double support, double skin) : support_(support), skin_(skin) {}
+
+  /// Makes every list. @param mobile per particle, 1 if it moves or may begin to before the next
+  /// rebuild.
+  void build(const Particles& particles, const std::vector<Ghost>& ghosts,
+             const std::vector<std::uint8_t>& mobile);
+  /// Remakes the lists of the particles that have, or since build() had, a mobile particle within
+  /// reach. Indices must not have changed since build(); with ghosts it makes every list.
+  void rebuild(const Particles& particles, const std::vector<Ghost>& ghosts,
+               const std::vector<std::uint8_t>& mobile);
+
+  const NeighbourList& list() const { return list_; }
+  double skin() const { return skin_; }
+  /// Particles whose lists rebuild() remakes.
+  std::size_t remade() const { return remade_.size(); }
+
+ private:
+  void make(const Particles& particles, const std::vector<Ghost>& ghosts,
+            const std::vector<std::uint8_t>& mobile, bool all);
+
+  double support_, skin_;
+  NeighbourList list_;
+  std::size_t kept_ = 0;               // entries of list_.index that build() made
+  std::vector<std::uint8_t> touched_;  // had a mobile particle within reach since build()
+  std::vector<std::uint32_t> remade_;
+};
 
 /// A position that is outside the support of every kernel but whose distances stay finite, for the
 /// void record.

@@ -142,6 +142,45 @@ TEST(Neighbours, ALatticeHas92WithinThreeSpacings) {
   EXPECT_EQ(list.mean_neighbours(), 92);
 }
 
+TEST(MovingNeighbours, ListsStayRightWhileTheFastestTwoMoveByLessThanTheSkin) {
+  Particles particles = random_particles(900, 10.0, 4);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.115, 0.115);  // below skin/2 with its diagonal
+  std::vector<std::uint8_t> mobile(particles.size(), 0);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    mobile[i] = particles.position[i][0] < 3 ? 1 : 0;
+  }
+  MovingNeighbours lists(1.0, 0.4);
+  lists.build(particles, {}, mobile);
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      for (double& x : particles.position[i]) {
+        x += mobile[i] != 0 ? shift(random) : 0;
+      }
+    }
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      std::vector<bool> listed(particles.size(), false);
+      for (std::size_t k = lists.list().first[i]; k < lists.list().last[i]; ++k) {
+        if (lists.list().index[k] != lists.list().void_index) {
+          listed[lists.list().index[k]] = true;
+        }
+      }
+      for (std::size_t j = 0; j < particles.size(); ++j) {
+        const auto &a = particles.position[i], &b = particles.position[j];
+        const double distance = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        ASSERT_TRUE(listed[j] || i == j || distance >= 1) << "round " << round;
+        ASSERT_TRUE(!listed[j] || distance < 1.8);
+      }
+    }
+    // Those that came to rest where they had moved to keep lists of their new neighbours.
+    for (std::size_t i = 0; i < particles.size() && round == 1; ++i) {
+      mobile[i] = particles.position[i][0] < 1 ? 1 : 0;
+    }
+    lists.rebuild(particles, {}, mobile);
+    EXPECT_LT(lists.remade(), particles.size() * 6 / 10);
+  }
+}
+
 TEST(Ghosts, ATemperatureFaceReflectsAboutItsTemperature) {
   Particles particles;
   particles.spacing = 1;

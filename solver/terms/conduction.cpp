@@ -13,7 +13,7 @@ void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighb
     const Lane x = own.x, y = own.y, z = own.z, temperature = own.temperature,
                conductivity = own.conductivity;
     Lane sum = 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.first[i + 1]; k += lane_count) {
+    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
       const std::uint32_t* j = &neighbours.index[k];
       const Lane dx = x - gather(all, j, &HeatRecord::x);
       const Lane dy = y - gather(all, j, &HeatRecord::y);

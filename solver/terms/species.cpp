@@ -16,7 +16,7 @@ void diffuse(const std::vector<SpeciesRecord>& records, const NeighbourList& nei
     const Lane x = own.x, y = own.y, z = own.z, diffusivity = own.diffusivity,
                density = own.density, concentration = own.concentration;
     Lane sum = 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.first[i + 1]; k += lane_count) {
+    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
       const std::uint32_t* j = &neighbours.index[k];
       const Lane dx = x - gather(all, j, &SpeciesRecord::x);
       const Lane dy = y - gather(all, j, &SpeciesRecord::y);
