@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes OUTPUT with the last commit that touched a folder with code. Commits of text, data or results
+# Writes OUTPUT with the last commit that touched a folder with code. Commits of text, data or committed results
 # do not change it, so they make no artifact out of date.
-set(code base solver imaging validation cmake CMakeLists.txt)
+set(code base solver imaging validation cmake CMakeLists.txt
+  ":(exclude)solver/verification/results" ":(exclude)*.md")
 execute_process(COMMAND git log -1 --format=%h --abbrev=12 -- ${code}
   WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git status --porcelain -- ${code}

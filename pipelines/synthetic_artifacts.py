@@ -138,7 +138,7 @@ def verification(path, profiles):
         cases.append({"name": name, "kind": kind, "title": name.replace("_", " ") + " (synthetic)",
                       "reference": "synthetic", "quantity": "synthetic", "error": 0.005, "asked": 0.01, "order": 2.0,
                       "pass": True, "spacings_um": [1, 2, 4], "errors": [0.005, 0.02, 0.08],
-                      "profile_csv": str(table)})
+                      "profile": {"position": "position [um]", "value": "value [1]"}, "profile_csv": str(table)})
     Path(path).write_text(json.dumps({"cases": cases, "provenance": PROVENANCE}))
 
 

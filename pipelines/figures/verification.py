@@ -8,14 +8,6 @@ import numpy as np
 import style
 from artifact import MissingArtifact, column, read_json, read_table, value
 
-# What the profile of each kind of case shows.
-QUANTITIES = {
-    "species_stripe": "concentration [1]",
-    "conduction_slab": "temperature minus mean [K]",
-    "conduction_contact": "temperature [K]",
-    "stefan": "temperature [K]",
-}
-
 
 def load_cases(path, wanted):
     """The cases of verification.json whose name holds one of the words in `wanted`."""
@@ -49,8 +41,8 @@ def plot_profile(axes, case, verification):
         axes.plot(position[chosen][::every], computed[chosen][::every], linestyle="none", marker=look["marker"],
                   color=look["color"], fillstyle="none", markersize=3.2, markeredgewidth=0.7,
                   label=f"SPH, {size:g} um", zorder=4)
-    axes.set_xlabel("position [um]")
-    axes.set_ylabel(QUANTITIES[case["kind"]])
+    axes.set_xlabel(case["profile"]["position"])
+    axes.set_ylabel(case["profile"]["value"])
     axes.set_title(textwrap.fill(case["title"], 34), fontsize=7)
     axes.legend(loc="best", fontsize=6)
 

@@ -46,10 +46,6 @@ Diffusivity constant_diffusivity(double value) {
   return law;
 }
 
-std::size_t whole(double length, double spacing) {
-  return static_cast<std::size_t>(std::llround(length / spacing));
-}
-
 /// A row of n particles along x, periodic across: the sums are those of three dimensions.
 Particles make_row(std::size_t n, double spacing) {
   Particles row;
@@ -77,6 +73,16 @@ void run_until(Engine& engine, double time) {
   }
 }
 
+/// A run with its counts, whose profile is a temperature.
+VerificationRun thermal_run(const Engine& engine) {
+  VerificationRun run;
+  run.steps = engine.steps();
+  run.particles = engine.particles().size();
+  run.value_name = "temperature";
+  run.value_unit = "K";
+  return run;
+}
+
 /// Relative L2 norm of value - exact; `scale` is what the exact solution is measured from.
 double l2_error(const VerificationRun& run, double scale_offset) {
   double difference = 0, reference = 0;
@@ -95,7 +101,8 @@ VerificationRun run_species_stripe(const VerificationCase& c, double spacing) {
   Particles particles;
   particles.dimensions = 2;
   particles.spacing = spacing;
-  const std::size_t nz = whole(c.length, spacing), nx = whole(c.width, spacing);
+  const std::size_t nz = particles_along(c, c.length, spacing),
+                    nx = particles_along(c, c.width, spacing);
   for (std::size_t k = 0; k < nz; ++k) {
     for (std::size_t i = 0; i < nx; ++i) {
       const double low = static_cast<double>(k) * spacing, high = low + spacing;
@@ -126,7 +133,7 @@ VerificationRun run_species_stripe(const VerificationCase& c, double spacing) {
   const StripeSolution solution{c.z1, c.z2, c.length};
   const double spread = std::sqrt(4 * c.diffusivity * c.time);
   VerificationRun run;
-  run.spacing = spacing;
+  run.value_name = "concentration";
   run.steps = engine.steps();
   run.particles = engine.particles().size();
   VerificationRun all;
@@ -155,7 +162,7 @@ VerificationRun run_conduction_slab(const VerificationCase& c, double spacing) {
   const Material slab = plain_material("slab", c.diffusivity * density * specific_heat, 900, 901);
   const double middle = 500, amplitude = 100;
   const auto mode = [&](double x) { return std::cos(std::numbers::pi * x / c.length); };
-  Particles particles = make_row(whole(c.length, spacing), spacing);
+  Particles particles = make_row(particles_along(c, c.length, spacing), spacing);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     particles.enthalpy[i] =
         specific_heat * (middle + amplitude * mode(particles.position[i][0]) - 298.15);
@@ -165,7 +172,8 @@ VerificationRun run_conduction_slab(const VerificationCase& c, double spacing) {
   model.species = false;
   Engine engine(std::move(particles), Mixture(slab, slab), constant_diffusivity(0), model);
   run_until(engine, c.time);
-  VerificationRun run{spacing, 0, engine.steps(), engine.particles().size(), {}, {}, {}};
+  VerificationRun run = thermal_run(engine);
+  run.value_name = "temperature minus mean";
   const double decay = std::exp(-c.diffusivity * std::pow(std::numbers::pi / c.length, 2) * c.time);
   for (std::size_t i = 0; i < engine.particles().size(); ++i) {
     const double x = engine.particles().position[i][0];
@@ -183,7 +191,7 @@ VerificationRun run_conduction_contact(const VerificationCase& c, double spacing
                         plain_material("right", right, 900, 901));
   const ContactSolution solution{600,   400,           left,
                                  right, c.diffusivity, c.diffusivity * c.conductivity_ratio};
-  Particles particles = make_row(whole(c.length, spacing), spacing);
+  Particles particles = make_row(particles_along(c, c.length, spacing), spacing);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const bool on_left = particles.position[i][0] < c.length / 2;
     particles.concentration[i] = on_left ? 0 : 1;
@@ -196,7 +204,7 @@ VerificationRun run_conduction_contact(const VerificationCase& c, double spacing
   model.species = false;
   Engine engine(std::move(particles), mixture, constant_diffusivity(0), model);
   run_until(engine, c.time);
-  VerificationRun run{spacing, 0, engine.steps(), engine.particles().size(), {}, {}, {}};
+  VerificationRun run = thermal_run(engine);
   const double jump = solution.temperature_left - solution.temperature_right;
   double difference = 0;
   for (std::size_t i = 0; i < engine.particles().size(); ++i) {
@@ -219,7 +227,7 @@ VerificationRun run_stefan(const VerificationCase& c, double spacing) {
   metal.enthalpy = {{0, 298.15, melting, melting + mushy, 1000},
                     {-298.15 * specific_heat, 0, at_melting, at_melting + latent,
                      at_melting + latent + specific_heat * (1000 - melting - mushy)}};
-  Particles particles = make_row(whole(c.length, spacing), spacing);
+  Particles particles = make_row(particles_along(c, c.length, spacing), spacing);
   for (double& enthalpy : particles.enthalpy) {
     enthalpy = at_melting;
   }
@@ -231,7 +239,7 @@ VerificationRun run_stefan(const VerificationCase& c, double spacing) {
   const double lambda = stefan_lambda(c.stefan), front = c.front * c.length;
   const double time = std::pow(front / (2 * lambda), 2) / c.diffusivity;
   run_until(engine, time);
-  VerificationRun run{spacing, 0, engine.steps(), engine.particles().size(), {}, {}, {}};
+  VerificationRun run = thermal_run(engine);
   double molten = 0;
   for (std::size_t i = 0; i < engine.particles().size(); ++i) {
     const double x = engine.particles().position[i][0];

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/verification/kinds.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.hpp"
+#include "solver/verification/problems.hpp"
+
+namespace meltproof::solver {
+
+const std::vector<VerificationKind>& verification_kinds() {
+  // One line per kind, in the order of the suite's table.
+  static const std::vector<VerificationKind> kinds = {
+      {"species_stripe", run_species_stripe},
+      {"conduction_slab", run_conduction_slab},
+      {"conduction_contact", run_conduction_contact},
+      {"stefan", run_stefan},
+  };
+  return kinds;
+}
+
+const VerificationKind& find_kind(const std::string& name) {
+  const auto& kinds = verification_kinds();
+  const auto found = std::find_if(kinds.begin(), kinds.end(),
+                                  [&](const VerificationKind& kind) { return kind.name == name; });
+  if (found == kinds.end()) {
+    std::vector<std::string> names;
+    for (const auto& kind : kinds) {
+      names.push_back(kind.name);
+    }
+    throw InputError(fmt::format("there is no kind of verification case \"{}\"; choose one of: {}",
+                                 name, fmt::join(names, ", ")));
+  }
+  return *found;
+}
+
+}  // namespace meltproof::solver
