@@ -70,16 +70,16 @@ struct Material {
   Property conductivity;                          ///< W m-1 K-1
   Property viscosity;                             ///< Pa s, real (without any stabilising factor)
   Property surface_tension;                       ///< N m-1
-  double real_density = 0;  ///< kg m-3, of the solid; `density` unless the file gives another
+  double real_density = 0;  ///< kg m-3, of the cold solid; `density` unless the file gives another
   /// Standard uncertainties in the unit of the quantity, by its key, where the file states one.
   std::map<std::string, double> uncertainty;
-  PrintedForms printed;
+  PrintedForms printed;  ///< empty if the file holds none
 };
 
 /// Reads data/materials/<name>.toml. With Form::as_printed the printed forms replace the repaired
 /// ones where the engine can use them; enthalpy stays the repaired one, because the printed one
 /// cannot be inverted. @throws InputError naming file and key, also for pieces that leave gaps or
-/// jump.
+/// jump, and for printed forms that the file does not hold.
 Material read_material(const std::filesystem::path& path, Form form = Form::repaired);
 
 /// D = prefactor exp(-activation_temperature / T), the diffusivity of the additive in the base

@@ -201,7 +201,7 @@ Material read_material(const std::filesystem::path& path, Form form) {
   RawEnthalpy enthalpy;
   RawProperty conductivity, viscosity, surface_tension, printed_enthalpy, printed_heat,
       printed_conductivity, printed_viscosity, printed_tension;
-  bool has_real_density = false;
+  bool has_real_density = false, has_printed = false;
 
   InputTable printed("as_printed", "what the source prints, kept beside the repaired forms");
   printed
@@ -223,7 +223,7 @@ Material read_material(const std::filesystem::path& path, Form form) {
       .table(property_table("conductivity", "W m-1 K-1", conductivity))
       .table(property_table("viscosity", "Pa s", viscosity))
       .table(property_table("surface_tension", "N m-1", surface_tension))
-      .table(std::move(printed));
+      .table(std::move(printed), &has_printed);
   Input input(std::move(root));
   input.read(path);
   m.checksum = sha256_file(path);
@@ -247,6 +247,15 @@ Material read_material(const std::filesystem::path& path, Form form) {
   m.conductivity = finished(conductivity, where("conductivity"), false);
   m.viscosity = finished(viscosity, where("viscosity"), false);
   m.surface_tension = finished(surface_tension, where("surface_tension"), false);
+  if (!has_printed) {
+    if (form == Form::as_printed) {
+      throw InputError(
+          fmt::format("{}: as_printed: there are no forms as printed in this file: expected form = "
+                      "\"repaired\"",
+                      path.string()));
+    }
+    return m;
+  }
   m.printed.enthalpy = finished(printed_enthalpy, where("as_printed.enthalpy"), true);
   m.printed.specific_heat = finished(printed_heat, where("as_printed.specific_heat"), true);
   m.printed.conductivity = finished(printed_conductivity, where("as_printed.conductivity"), true);

@@ -85,6 +85,65 @@ TEST(AsPrinted, ReplacesWhatTheEngineCanUseAndKeepsTheInvertibleEnthalpy) {
   EXPECT_EQ(read_material("data/materials/AlSi10Mg.toml", Form::as_printed).molar_mass, 0.33214);
 }
 
+// Nickel alloys, for benchmark tracks: literature values without printed forms.
+
+TEST(NickelAlloys, HaveNoPrintedFormsToSwitchTo) {
+  for (const std::string name : {"IN625", "IN718"}) {
+    const std::string path = "data/materials/" + name + ".toml";
+    EXPECT_TRUE(read_material(path).printed.enthalpy.pieces.empty());
+    try {
+      read_material(path, Form::as_printed);
+      FAIL() << name;
+    } catch (const InputError& refused) {
+      EXPECT_NE(std::string(refused.what()).find("as_printed"), std::string::npos);
+    }
+  }
+}
+
+TEST(NickelAlloys, EnthalpyKeepsTheIntegralsOfItsSources) {
+  const Material a = read_material("data/materials/IN625.toml");
+  const auto heat = [](double from, double to, double c0, double c1, double c2) {
+    return c0 * (to - from) + c1 * (to * to - from * from) / 2 +
+           c2 * (to * to * to - from * from * from) / 3;
+  };
+  EXPECT_NEAR(a.enthalpy(1563.15), heat(298.15, 1563.15, 338.39, 0.2441, 0), 10);
+  const double solid_625 = 338.39 + 0.2441 * 1563.15;
+  EXPECT_NEAR(a.enthalpy(1622) - a.enthalpy(1563.15),
+              217.54e3 + (1622 - 1563.15) * (solid_625 + 750.65) / 2, 10);
+  const Material b = read_material("data/materials/IN718.toml");
+  EXPECT_NEAR(b.enthalpy(1533), heat(298.15, 1533, 360.56, 0.2621, -4e-5), 10);
+  const double solid_718 = 360.56 + 0.2621 * 1533 - 4e-5 * 1533 * 1533;
+  EXPECT_NEAR(b.enthalpy(1609) - b.enthalpy(1533), 210e3 + 76 * (solid_718 + 720) / 2, 10);
+}
+
+TEST(NickelAlloys, AbsorptivityIsBramsonsAtTheLasersWavelength) {
+  for (const auto& [name, resistivity] : {std::pair{"IN625", 129e-6}, std::pair{"IN718", 125e-6}}) {
+    const double q = resistivity / 1.07e-4;
+    EXPECT_NEAR(read_material(std::string("data/materials/") + name + ".toml").absorptivity,
+                0.365 * std::sqrt(q) - 0.0667 * q + 0.006 * std::pow(q, 1.5), 0.01)
+        << name;
+  }
+}
+
+TEST(NickelAlloys, ConductivityPassesThroughTheDataSheetAndTheMeasurements) {
+  const Material a = read_material("data/materials/IN625.toml");
+  EXPECT_NEAR(a.conductivity(116.15), 7.2, 0.05);
+  EXPECT_NEAR(a.conductivity(1255.15), 25.2, 0.05);
+  EXPECT_NEAR(a.conductivity(294.15), 9.8, 0.3);
+  const Material b = read_material("data/materials/IN718.toml");
+  EXPECT_NEAR(b.conductivity(600), 5.291 + 0.0152 * 600 + 1.382e-6 * 600 * 600, 1.35);
+  EXPECT_NEAR(b.conductivity(1300), 11.75 + 0.011 * 1300 - 9.327e-7 * 1300 * 1300, 1.35);
+}
+
+TEST(NickelAlloys, MixWithThemselvesAsABarePlateNeeds) {
+  const Material a = read_material("data/materials/IN625.toml");
+  const Mixture plate(a, a);
+  EXPECT_NEAR(plate.temperature(plate.enthalpy(2000, 0), 0), 2000, 1e-9);
+  EXPECT_GT(a.real_density, a.density);
+  EXPECT_GT(a.surface_tension(1700), a.surface_tension(2700));
+  EXPECT_GT(a.surface_tension(3400), 0.5);
+}
+
 // The repaired forms.
 
 TEST(Enthalpy, KeepsThePrintedSlopesAndIsZeroAtRoomTemperature) {
