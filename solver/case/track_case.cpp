@@ -160,12 +160,13 @@ Input declare(TrackCase& t) {
       .table(std::move(laser))
       .table(std::move(domain))
       .table(std::move(physics))
+      .table(flow_table(t.flow))
       .table(std::move(output));
   return Input(std::move(root));
 }
 
-std::vector<std::string> warnings(const TrackCase& t) {
-  std::vector<std::string> result;
+std::vector<std::string> warnings(const TrackCase& t, const Mixture& mixture) {
+  std::vector<std::string> result = flow_warnings(t.flow, mixture);
   if (t.beam_radius < 2 * t.spacing) {
     throw InputError(
         fmt::format("spacing {} um: a beam radius of {} um needs a spacing of at most {} um",
@@ -207,6 +208,8 @@ Model make_model(const TrackCase& t, const Domain& domain) {
                       .exposure = t.exposure};
   model.surface_loss =
       SurfaceLossSettings{t.evaporation, t.radiation, t.ambient_temperature, t.ambient_pressure};
+  model.flow = flow_settings(t.flow, t.form == "as_printed" ? 20 : 1);
+  model.freezing_fraction = t.flow.freezing_fraction;
   return model;
 }
 

@@ -9,6 +9,7 @@
 #include "base/input.hpp"
 #include "base/material.hpp"
 #include "solver/particles/particles.hpp"
+#include "solver/case/flow_input.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
@@ -34,6 +35,8 @@ struct TrackCase {
   std::string species_factor = "consistent", species_scheme = "as_printed",
               species_operator = "fourth";
   double ambient_temperature = 293.15, ambient_pressure = 101325;
+
+  FlowInput flow;
 
   double frame_rate = 9762.5;        ///< Hz, of the snapshots
   double history_interval = 5e-6;    ///< s
@@ -63,7 +66,8 @@ struct Discretisation {
 Discretisation discretise(const TrackCase& track, const Mixture& mixture);
 
 /// Sentences about what the case cannot resolve well; empty if nothing is wrong.
-std::vector<std::string> warnings(const TrackCase& track);
+/// @throws InputError where it could not be stable, with the number that would do.
+std::vector<std::string> warnings(const TrackCase& track, const Mixture& mixture);
 
 /// The engine's model for a track.
 Model make_model(const TrackCase& track, const Domain& domain);

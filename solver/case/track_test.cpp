@@ -81,9 +81,9 @@ TEST(Discretise, ABarePlateNeedsNoBedAndAPowderCaseDoes) {
 TEST(TrackCase, ASpacingThatCannotHoldTheBeamIsRefused) {
   TrackCase t = small_case();
   t.spacing = 25e-6;
-  EXPECT_THROW(warnings(t), InputError);
+  EXPECT_THROW(warnings(t, paper_mixture()), InputError);
   t.spacing = 14e-6;
-  EXPECT_FALSE(warnings(t).empty());
+  EXPECT_FALSE(warnings(t, paper_mixture()).empty());
 }
 
 TEST(MeltPool, ASphericalPoolIsMeasuredFinerThanTheSpacing) {

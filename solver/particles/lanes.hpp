@@ -22,6 +22,16 @@ inline Lane larger(const Lane& a, const Lane& b) { return std::experimental::max
 inline double square_root(double value) { return std::sqrt(value); }
 inline Lane square_root(const Lane& value) { return std::experimental::sqrt(value); }
 
+/// `value` where `test` is positive, `other` elsewhere.
+inline double where_positive(double test, double value, double other) {
+  return test > 0 ? value : other;
+}
+inline Lane where_positive(const Lane& test, const Lane& value, const Lane& other) {
+  Lane result = other;
+  std::experimental::where(test > 0.0, result) = value;
+  return result;
+}
+
 /// The sum over the lanes, always in the same order.
 inline double sum_lanes(const Lane& value) {
   double sum = 0;

@@ -2,7 +2,9 @@
 #include "solver/step/engine.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -24,6 +26,19 @@ Particles sorted(Particles particles, double smoothing_ratio) {
   return particles;
 }
 
+/// Wall-clock time, added up by lap.
+class Stopwatch {
+ public:
+  void lap(double& sum) {
+    const auto now = std::chrono::steady_clock::now();
+    sum += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 }  // namespace
 
 Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model)
@@ -33,34 +48,58 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
       model_(model),
       kernel_(lattice_kernel(particles_, model.smoothing_ratio, model.heat_moments)),
       species_kernel_(lattice_kernel(particles_, model.smoothing_ratio, model.species_moments)),
-      ghosts_(make_ghosts(particles_, model.domain, kernel_.support())),
-      neighbours_(make_neighbours(particles_, ghosts_, kernel_.support())) {
-  const std::size_t n = particles_.size(), with_ghosts = n + ghosts_.size() + 1;
-  heat_records_.resize(with_ghosts);
-  species_records_.resize(with_ghosts);
-  for (auto* field :
-       {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_, &absorptivity_}) {
+      neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0) {
+  const std::size_t n = particles_.size();
+  mobile_.assign(n, 0);
+  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
+                      &absorptivity_, &loss_area_}) {
     field->assign(n, 0.0);
   }
+  if (model_.flow) {
+    flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions);
+  }
+  ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
+  neighbours_.build(particles_, ghosts_, mobile_);
+  place_records();
+  for_each_particle(n, [&](std::size_t i) { refresh(i); });
+  refresh_ghosts();
   if (model_.laser || model_.surface_loss) {
     surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper);
   }
-  // Positions and volumes of the records are those of fixed particles, so they are written once.
+  check_numbers();
+  if (flow_) {
+    start_flow();
+  }
+}
+
+/// Positions and volumes of the records: once for fixed particles, every thermal step for moving
+/// ones.
+void Engine::place_records() {
+  const std::size_t n = particles_.size(), all = neighbours_.list().void_index + std::size_t{1};
+  heat_records_.resize(all);
+  species_records_.resize(all);
   const auto place = [&](std::size_t at, std::size_t source, const Vector& position) {
     const double volume = particles_.volume[source];
-    heat_records_[at] = {position[0], position[1], position[2], volume, 0, 1};
-    species_records_[at] = {
-        position[0], position[1], position[2], volume, particles_.mass[source] / volume, 0, 0};
+    auto& heat = heat_records_[at];
+    auto& species = species_records_[at];
+    if (particles_.phase[source] == Phase::lost) {
+      heat = {};
+      species = {};
+      return;
+    }
+    heat.x = species.x = position[0];
+    heat.y = species.y = position[1];
+    heat.z = species.z = position[2];
+    heat.volume = species.volume = volume;
+    species.density = particles_.mass[source] / volume;
   };
-  for (std::size_t i = 0; i < n; ++i) {
-    place(i, i, particles_.position[i]);
-  }
+  for_each_particle(n, [&](std::size_t i) { place(i, i, particles_.position[i]); });
   for (std::size_t g = 0; g < ghosts_.size(); ++g) {
-    place(n + g, ghosts_[g].source, ghosts_[g].position);
+    const std::uint32_t source = ghosts_[g].source;
+    place(n + g, source, ghosts_[g].image_of(particles_.position[source]));
   }
-  for_each_particle(n, [&](std::size_t i) { refresh(i); });
-  refresh_ghosts();
-  check_numbers();
+  heat_records_.back() = {};
+  species_records_.back() = {};
 }
 
 double Engine::total_enthalpy() const {
@@ -106,16 +145,28 @@ void Engine::refresh_ghosts() {
 }
 
 void Engine::check_numbers() const {
+  const auto where = [&](std::size_t i) {
+    const auto& at = particles_.position[i];
+    return fmt::format("step {}, time {:.6g} s, particle {} at ({:.3g}, {:.3g}, {:.3g}) um", steps_,
+                       time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2]);
+  };
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     if (!std::isfinite(particles_.temperature[i])) {
-      const auto& at = particles_.position[i];
       throw std::runtime_error(fmt::format(
-          "step {}, time {:.6g} s: the temperature of particle {} at ({:.3g}, {:.3g}, {:.3g}) um "
-          "is not a number "
-          "(enthalpy {:.6g} J/kg, concentration {:.6g}; last conducted power {:.6g} W/m3, source "
-          "{:.6g} W)",
-          steps_, time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2],
-          particles_.enthalpy[i], particles_.concentration[i], conducted_[i], source_[i]));
+          "{}: the temperature is not a number (enthalpy {:.6g} J/kg, concentration {:.6g}; last "
+          "conducted power {:.6g} W/m3, source {:.6g} W)",
+          where(i), particles_.enthalpy[i], particles_.concentration[i], conducted_[i],
+          source_[i]));
+    }
+  }
+  if (flow_) {
+    for (const std::uint32_t i : flow_->liquid()) {
+      const auto &v = particles_.velocity[i], &x = particles_.position[i];
+      if (!std::isfinite(v[0] + v[1] + v[2] + x[0] + x[1] + x[2] + particles_.density[i])) {
+        throw std::runtime_error(
+            fmt::format("{}: the motion is not a number; the first term that is none: {}", where(i),
+                        flow_->diagnose(particles_, i, melt_)));
+      }
     }
   }
 }
@@ -149,13 +200,15 @@ void Engine::advance_species(double dt) {
     return;
   }
   fill_species_records(particles_.concentration);
-  diffuse(species_records_, neighbours_, species_kernel_, model_.species_factor, liquid_, rate_);
+  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, liquid_,
+          rate_);
   half_step_ = particles_.concentration;
   for (const std::uint32_t i : liquid_) {
     half_step_[i] += 0.5 * dt * rate_[i];
   }
   fill_species_records(half_step_);
-  diffuse(species_records_, neighbours_, species_kernel_, model_.species_factor, liquid_, rate_);
+  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, liquid_,
+          rate_);
   for (const std::uint32_t i : liquid_) {
     if (model_.species_scheme == SpeciesScheme::midpoint) {
       particles_.concentration[i] += dt * rate_[i];
@@ -165,12 +218,86 @@ void Engine::advance_species(double dt) {
   }
 }
 
-double Engine::step(double until) {
+/// Times of melting and freezing, and how fast and steeply the melt froze.
+void Engine::note_phase_times(std::size_t i, double old_enthalpy, double old_temperature,
+                              double dt) {
+  const double concentration = particles_.concentration[i];
+  const double liquidus = mixture_.liquidus(concentration);
+  const double before = old_temperature, now = particles_.temperature[i];
+  if ((before >= liquidus) == (now >= liquidus) || dt <= 0) {
+    return;
+  }
+  // Enthalpy changes evenly within a step, temperature does not.
+  const double crossing = mixture_.enthalpy(liquidus, concentration);
+  const double change = particles_.enthalpy[i] - old_enthalpy;
+  const double share = change != 0 ? std::clamp((crossing - old_enthalpy) / change, 0.0, 1.0) : 1;
+  const double when = time_ + share * dt;
+  if (now >= liquidus) {
+    particles_.melt_time[i] = when;
+    return;
+  }
+  particles_.freeze_time[i] = when;
+  // The rate at which the liquid cooled, before the latent heat held it.
+  particles_.cooling_rate[i] =
+      -change / dt / mixture_.specific_heat(liquidus + 1e-6, concentration);
+  InterfaceSums sums;
+  const HeatRecord& own = heat_records_[i];
+  const NeighbourList& list = neighbours_.list();
+  for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+    const std::uint32_t j = list.index[k];
+    const HeatRecord& other = heat_records_[j];
+    const double x = own.x - other.x, y = own.y - other.y, z = own.z - other.z;
+    if (j == list.void_index || other.volume == 0) {
+      continue;
+    }
+    const double factor = kernel_.gradient_factor(x * x + y * y + z * z);
+    const double step = factor * (own.temperature - other.temperature);
+    sums.difference[0] += step * x;
+    sums.difference[1] += step * y;
+    sums.difference[2] += step * z;
+    sums.moment[0] += factor * x * x;
+    sums.moment[1] += factor * y * y;
+    sums.moment[2] += factor * z * z;
+    sums.moment[3] += factor * x * y;
+    sums.moment[4] += factor * x * z;
+    sums.moment[5] += factor * y * z;
+  }
+  const Vector gradient = surface_gradient(sums, {});
+  particles_.freeze_gradient[i] = std::hypot(gradient[0], gradient[1], gradient[2]);
+}
+
+/// Evaporation, radiation and convection into source_. A flowing surface evaporates from all of its
+/// area, seen from above or not; what stands still loses heat through its plan area.
+/// @returns the fastest rate, 1/s.
+double Engine::lose_surface_heat() {
+  loss_ = {};
+  std::fill(source_.begin(), source_.end(), 0.0);
+  if (!model_.surface_loss) {
+    return 0;
+  }
+  if (flow_) {
+    std::fill(loss_area_.begin(), loss_area_.end(), 0.0);
+    for (const std::uint32_t top : surface_.top) {
+      if (top != SurfaceColumns::none && particles_.phase[top] == Phase::solid) {
+        loss_area_[top] += surface_.width * surface_.width;
+      }
+    }
+    for (const std::uint32_t i : flow_->liquid()) {
+      loss_area_[i] = flow_->area()[i];
+    }
+    loss_ = lose_heat(particles_, loss_area_, mixture_, *model_.surface_loss, source_);
+  } else {
+    loss_ = lose_heat(particles_, surface_, mixture_, *model_.surface_loss, source_);
+  }
+  return loss_.fastest_rate;
+}
+
+/// The step by all criteria, and into how many steps of the flow it falls.
+double Engine::choose_step(double until, double surface_rate, int& flow_steps) {
   const std::size_t n = particles_.size();
-  // The state belongs to the present enthalpy and concentration: the constructor and the end of
-  // each step see to that.
   StepExtremes extremes;
   extremes.smoothing_length = kernel_.smoothing_length;
+  extremes.surface_rate = surface_rate;
   if (model_.conduction) {
     extremes.thermal_diffusivity =
         block_max(n, 0.0, [&](std::size_t i) { return thermal_diffusivity_[i]; });
@@ -179,52 +306,109 @@ double Engine::step(double until) {
     extremes.species_diffusivity =
         block_max(n, 0.0, [&](std::size_t i) { return diffusivity_[i]; });
   }
-  std::fill(source_.begin(), source_.end(), 0.0);
-  SurfaceLossBudget loss;
-  if (model_.surface_loss) {
-    loss = lose_heat(particles_, surface_, mixture_, *model_.surface_loss, source_);
-    extremes.surface_rate = loss.fastest_rate;
+  const double thermal = step_limits(extremes).smallest();
+  double dt = thermal, flow_limit = std::numeric_limits<double>::infinity();
+  if (flow_ && !flow_->liquid().empty()) {
+    StepExtremes motion;
+    motion.smoothing_length = kernel_.smoothing_length;
+    motion.sound_speed = flow_->settings().sound_speed;
+    motion.speed = largest_speed();
+    motion.density = std::numeric_limits<double>::infinity();
+    motion.gravity = std::hypot(flow_->settings().gravity[0], flow_->settings().gravity[1],
+                                flow_->settings().gravity[2]);
+    for (const std::uint32_t i : flow_->liquid()) {
+      const double density = particles_.density[i];
+      motion.kinematic_viscosity =
+          std::max(motion.kinematic_viscosity, melt_.viscosity[i] / density);
+      motion.surface_tension = std::max(motion.surface_tension, melt_.surface_tension[i]);
+      motion.density = std::min(motion.density, density);
+    }
+    if (!flow_->settings().surface_tension) {
+      motion.surface_tension = 0;
+    }
+    const StepLimits flow_limits = step_limits(motion);
+    flow_limit = model_.step_factor * flow_limits.smallest();
+    // Within one thermal step nothing moves by more than a quarter of a spacing.
+    dt = std::min({dt, model_.flow_steps * flow_limits.smallest(),
+                   motion.speed > 0 ? 0.25 * particles_.spacing / motion.speed : dt});
+    limits_ = flow_limits;
+    const StepLimits rest = step_limits(extremes);
+    limits_.thermal = rest.thermal;
+    limits_.species = rest.species;
+    limits_.surface = rest.surface;
+  } else {
+    limits_ = step_limits(extremes);
   }
-  limits_ = step_limits(extremes);
+  if (!std::isfinite(dt)) {
+    dt = until - time_;
+  }
+  dt *= model_.step_factor;
   double end = until;
   if (model_.laser && model_.laser->on(time_)) {
     // The beam is switched off exactly at the end of a step, so that its energy is P times its
     // exposure.
     end = std::min(end, model_.laser->exposure);
   }
-  double dt = model_.step_factor * limits_.smallest();
   // A remainder much shorter than a step is shared with the step before it.
   if (time_ + dt >= end) {
     dt = end - time_;
   } else if (time_ + 2 * dt > end) {
     dt = (end - time_) / 2;
   }
+  flow_steps = std::max(1, static_cast<int>(std::ceil(dt / flow_limit)));
+  return dt;
+}
 
+double Engine::step(double until) {
+  // The state belongs to the present enthalpy and concentration: the constructor and the end of
+  // each step see to that.
+  const std::size_t n = particles_.size();
+  Stopwatch watch;
+  if (flow_ && (model_.laser || model_.surface_loss)) {
+    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper);
+  }
+  const double surface_rate = lose_surface_heat();
+  int flow_steps = 0;
+  const double dt = choose_step(until, surface_rate, flow_steps);
   beam_ = {};
-  if (model_.laser) {
+  if (model_.laser && model_.laser->on(time_)) {
     // The beam stands where it is in the middle of the step.
-    beam_ = model_.laser->on(time_)
-                ? irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_)
-                : LaserBudget{};
+    beam_ = irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_);
   }
+  watch.lap(times_.surface);
   if (model_.conduction) {
-    conduct(heat_records_, neighbours_, kernel_, conducted_);
+    conduct(heat_records_, neighbours_.list(), kernel_, conducted_);
   }
+  watch.lap(times_.heat);
   if (model_.species) {
     advance_species(dt);
   }
+  watch.lap(times_.species);
   for_each_particle(n, [&](std::size_t i) {
+    const double old_enthalpy = particles_.enthalpy[i], old_temperature = particles_.temperature[i];
     particles_.enthalpy[i] +=
         dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
     refresh(i);
+    note_phase_times(i, old_enthalpy, old_temperature, dt);
   });
-  refresh_ghosts();
+  watch.lap(times_.state);
   ledger_.absorbed += dt * beam_.absorbed;
   ledger_.reflected += dt * beam_.reflected;
   ledger_.missed += dt * beam_.missed;
-  ledger_.evaporated += dt * loss.evaporation;
-  ledger_.radiated += dt * loss.radiation;
-  time_ = dt == end - time_ ? end : time_ + dt;
+  ledger_.evaporated += dt * loss_.evaporation;
+  ledger_.radiated += dt * loss_.radiation;
+  ledger_.convected += dt * loss_.convection;
+  ledger_.evaporated_mass += dt * loss_.mass_rate;
+  if (flow_) {
+    advance_flow(dt, flow_steps);
+  }
+  refresh_ghosts();
+  const double next = time_ + dt;
+  // Rounding must not leave a step of nothing behind.
+  time_ = std::abs(next - until) < 1e-12 * until ? until : next;
+  if (model_.laser && std::abs(time_ - model_.laser->exposure) < 1e-12 * time_) {
+    time_ = model_.laser->exposure;
+  }
   ++steps_;
   check_numbers();
   return dt;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step of the model, written as the algorithm reads. Particles are fixed in this version; flow
-// adds its passes between the state and the exchange, on the same records, lists and limits.
+// One step of the model, written as the algorithm reads: heat and species take one thermal step,
+// then the melt flows through it in as many acoustic ones as that needs.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "base/material.hpp"
+#include "solver/flow/free_surface.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/neighbours.hpp"
@@ -36,13 +37,25 @@ struct Model {
   std::optional<SurfaceLossSettings> surface_loss;
   LatticeMoments heat_moments = LatticeMoments::second;
   LatticeMoments species_moments = LatticeMoments::fourth;
-  double step_factor = 1;  ///< of the smallest limit; for studies of the order in time
+  double step_factor = 1;            ///< of the smallest limit; for studies of the order in time
+  std::optional<FlowSettings> flow;  ///< none: particles stay where they are
+  /// With flow: acoustic steps in a thermal one, at most.
+  int flow_steps = 10;
+  /// With flow: a liquid particle becomes wall below this liquid fraction; melting needs 1. The
+  /// difference keeps particles at the liquidus from changing phase every step.
+  double freezing_fraction = 0.98;
+};
+
+/// Wall-clock seconds spent in each part of the step since the start.
+struct StepTimes {
+  double heat = 0, species = 0, surface = 0, state = 0, lists = 0, flow = 0;
 };
 
 /// Energies since the start, J.
 struct EnergyLedger {
-  double absorbed = 0, reflected = 0, missed = 0;  ///< of the laser's
-  double evaporated = 0, radiated = 0;             ///< lost through the surface
+  double absorbed = 0, reflected = 0, missed = 0;      ///< of the laser's
+  double evaporated = 0, radiated = 0, convected = 0;  ///< lost through the surface
+  double evaporated_mass = 0;  ///< kg that the vapour would carry; the particles keep it
 };
 
 /// The particles, everything derived from them, and the clock.
@@ -52,7 +65,7 @@ class Engine {
   Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model);
 
   /// Advances by the smallest limit, but not beyond `until` (s). Returns the step taken, s.
-  /// @throws std::runtime_error naming particle and term if a temperature is no longer a number.
+  /// @throws std::runtime_error naming particle and term if a number is no longer one.
   double step(double until);
 
   double time() const { return time_; }
@@ -60,11 +73,19 @@ class Engine {
   const Particles& particles() const { return particles_; }
   const Mixture& mixture() const { return mixture_; }
   const Model& model() const { return model_; }
-  const NeighbourList& neighbours() const { return neighbours_; }
+  const NeighbourList& neighbours() const { return neighbours_.list(); }
   const StepLimits& limits() const { return limits_; }
   const EnergyLedger& ledger() const { return ledger_; }
   const QuinticSpline& kernel() const { return kernel_; }
   const LaserBudget& beam() const { return beam_; }
+  /// The flow; throws std::bad_optional_access if the model has none.
+  const FreeSurfaceFlow& flow() const { return flow_.value(); }
+  const StepTimes& times() const { return times_; }
+  std::size_t flow_steps() const { return flow_count_; }  ///< acoustic steps so far
+  std::size_t list_builds() const { return list_builds_; }
+  std::size_t lost() const { return lost_; }  ///< particles that left the domain
+  /// Gives the liquid particles a velocity and lets the flow see it; for the start of a case.
+  void set_state(const std::vector<Vector>& velocity, const std::vector<double>& density);
 
   double total_enthalpy() const;       ///< sum of m H, J
   double total_additive_mass() const;  ///< sum of m C, kg
@@ -75,6 +96,18 @@ class Engine {
   void check_numbers() const;
   void fill_species_records(const std::vector<double>& concentration);
   void advance_species(double dt);
+  void place_records();
+  double lose_surface_heat();
+  double choose_step(double until, double surface_rate, int& flow_steps);
+  void note_phase_times(std::size_t i, double old_enthalpy, double old_temperature, double dt);
+
+  // Flow, in engine_flow.cpp
+  void start_flow();
+  bool change_phases();
+  void refresh_melt();
+  void rebuild_lists(bool everything);
+  void advance_flow(double dt, int steps);
+  double largest_speed() const;
 
   Particles particles_;
   Mixture mixture_;
@@ -82,18 +115,26 @@ class Engine {
   Model model_;
   QuinticSpline kernel_, species_kernel_;
   std::vector<Ghost> ghosts_;
-  NeighbourList neighbours_;
+  MovingNeighbours neighbours_;
   SurfaceColumns surface_;
   std::vector<HeatRecord> heat_records_;
   std::vector<SpeciesRecord> species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
-      half_step_;
+      half_step_, loss_area_;
   std::vector<std::uint32_t> liquid_;
   StepLimits limits_;
   LaserBudget beam_;
+  SurfaceLossBudget loss_;
   EnergyLedger ledger_;
   double time_ = 0;
   std::size_t steps_ = 0;
+
+  std::optional<FreeSurfaceFlow> flow_;
+  MeltProperties melt_;
+  std::vector<std::uint8_t> mobile_;
+  std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built
+  std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;
+  StepTimes times_;
 };
 
 }  // namespace meltproof::solver

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/case/flow_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "solver/terms/surface_loss.hpp"
+
+namespace meltproof::solver {
+
+InputTable flow_table(FlowInput& f) {
+  FlowSettings& s = f.settings;
+  InputTable table("flow", "How the melt moves; solid metal stands still.");
+  table
+      .flag(f.enabled,
+            {.name = "enabled", .about = "Let the melt flow; false: heat and species alone."})
+      .text(f.surroundings, {.name = "surroundings",
+                             .about = "What is not metal: nothing at all (a free surface).",
+                             .choices = {"free"}})
+      .quantity(s.sound_speed,
+                {.name = "sound_speed",
+                 .unit = "m s-1",
+                 .about = "Of the weakly compressible melt: p = c^2 (rho - rho0). Ten times the "
+                          "flow's speed, and high enough for the pressures that act.",
+                 .minimum = 1,
+                 .maximum = 5000})
+      .quantity(f.smallest_drop, {.name = "smallest_drop",
+                                  .unit = "m",
+                                  .about = "Radius of a drop whose capillary pressure may compress "
+                                           "the melt by 1 %; sets the least sound speed.",
+                                  .minimum = 1e-7,
+                                  .maximum = 1e-3})
+      .quantity(s.viscosity_factor,
+                {.name = "viscosity_factor",
+                 .unit = "1",
+                 .about = "On the real viscosity; 20 is the paper's (note of Table A2, errata 12).",
+                 .minimum = 0,
+                 .maximum = 1000})
+      .quantity(s.artificial_viscosity,
+                {.name = "artificial_viscosity",
+                 .unit = "1",
+                 .about = "Monaghan's alpha; a real viscosity (factor 1) needs 0.1 to 0.2.",
+                 .minimum = 0,
+                 .maximum = 10})
+      .quantity(s.density_diffusion, {.name = "density_diffusion",
+                                      .unit = "1",
+                                      .about = "delta of Molteni and Colagrossi.",
+                                      .minimum = 0,
+                                      .maximum = 1})
+      .text(f.cure, {.name = "clumping_cure",
+                     .about = "What keeps particles of the surface apart under tension.",
+                     .choices = {"none", "repulsion", "transport"}})
+      .quantity(s.repulsion, {.name = "repulsion",
+                              .unit = "Pa",
+                              .about = "Strength k of the cure \"repulsion\".",
+                              .minimum = 0,
+                              .maximum = 1e7})
+      .quantity(s.transport_pressure, {.name = "transport_pressure",
+                                       .unit = "Pa",
+                                       .about = "Background pressure of the cure \"transport\".",
+                                       .minimum = 0,
+                                       .maximum = 1e9})
+      .flag(s.surface_tension, {.name = "surface_tension", .about = "Capillary pressure."})
+      .flag(s.marangoni, {.name = "marangoni",
+                          .about = "Pull along the surface by the gradient of surface tension, of "
+                                   "temperature and of composition."})
+      .flag(s.recoil, {.name = "recoil", .about = "Recoil pressure of the vapour."})
+      .quantity(f.freezing_fraction,
+                {.name = "freezing_fraction",
+                 .unit = "1",
+                 .about = "Liquid fraction below which melt becomes wall; melting needs 1.",
+                 .minimum = 0.5,
+                 .maximum = 1})
+      .quantity(s.skin, {.name = "skin",
+                         .unit = "1",
+                         .about = "Skin of the Verlet lists, in spacings.",
+                         .minimum = 0.05,
+                         .maximum = 2});
+  return table;
+}
+
+std::optional<FlowSettings> flow_settings(const FlowInput& f, double viscosity_includes) {
+  if (!f.enabled) {
+    return std::nullopt;
+  }
+  FlowSettings settings = f.settings;
+  settings.viscosity_factor /= viscosity_includes;
+  settings.cure = f.cure == "none"        ? ClumpingCure::none
+                  : f.cure == "transport" ? ClumpingCure::transport
+                                          : ClumpingCure::repulsion;
+  return settings;
+}
+
+std::vector<std::string> flow_warnings(const FlowInput& f, const Mixture& mixture) {
+  std::vector<std::string> result;
+  if (!f.enabled) {
+    return result;
+  }
+  const double tension = mixture.surface_tension(mixture.liquidus(0), 0);
+  const double density = mixture.density(0);
+  const double capillary = 2 * tension / f.smallest_drop;
+  // The surface under a beam settles some 500 K above boiling, where recoil holds it.
+  const double recoil = f.settings.recoil ? recoil_pressure(mixture.boiling(0) + 500, 0, mixture,
+                                                            SurfaceLossSettings{}.ambient_pressure)
+                                          : 0;
+  const auto compression = [&](double pressure) {
+    return pressure / (density * f.settings.sound_speed * f.settings.sound_speed);
+  };
+  const auto speed_for = [&](double pressure, double share) {
+    return std::sqrt(pressure / (density * share));
+  };
+  // Measured: at 25 m/s the melt under recoil is compressed by 29 %, at 50 by up to 8 %.
+  const double most = std::max(capillary, recoil), refused = 0.05, warned = 0.03;
+  if (compression(most) > refused) {
+    throw InputError(fmt::format(
+        "flow.sound_speed = {:.4g} m/s: a pressure of {:.3g} Pa acts ({} of the melt), which would "
+        "compress it by {:.1f} %; the case cannot be stable below {:.0f} m/s, and {:.0f} m/s keeps "
+        "the compression at 1 %",
+        f.settings.sound_speed, most, capillary >= recoil ? "capillary pressure" : "recoil",
+        100 * compression(most), speed_for(most, refused), speed_for(most, 0.01)));
+  }
+  if (compression(most) > warned) {
+    result.push_back(fmt::format(
+        "the sound speed of {:.4g} m/s lets pressures of {:.3g} Pa compress the melt by {:.1f} %; "
+        "{:.0f} m/s keeps that at 1 %",
+        f.settings.sound_speed, most, 100 * compression(most), speed_for(most, 0.01)));
+  }
+  if (f.settings.viscosity_factor < 5 && f.settings.artificial_viscosity < 0.1) {
+    result.push_back(fmt::format(
+        "a viscosity of {:.3g} times the real one leaves the flow under-damped at these spacings; "
+        "flow.artificial_viscosity = 0.1 to 0.2 was needed",
+        f.settings.viscosity_factor));
+  }
+  return result;
+}
+
+}  // namespace meltproof::solver

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The [flow] table of a track: how the melt moves.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/input.hpp"
+#include "base/material.hpp"
+#include "solver/flow/free_surface.hpp"
+
+namespace meltproof::solver {
+
+/// What [flow] says.
+struct FlowInput {
+  bool enabled = true;
+  std::string surroundings = "free";  ///< "free" surface
+  std::string cure = "repulsion";     ///< "none", "repulsion", "transport"
+  FlowSettings settings;
+  double smallest_drop = 20e-6;  ///< m, radius of the smallest drop whose pressure must be held
+  double freezing_fraction = 0.98;
+  int steps_per_thermal_step = 10;
+};
+
+/// The declaration; `flow` must outlive the input.
+InputTable flow_table(FlowInput& flow);
+
+/// The settings for the engine, or none if the melt is to stand still.
+/// @param viscosity_includes the factor that the material's viscosity includes already: 20 for the
+/// printed forms, 1 for the repaired ones.
+std::optional<FlowSettings> flow_settings(const FlowInput& flow, double viscosity_includes);
+
+/// Sentences about what the sound speed and the spacing cannot hold well.
+/// @throws InputError where the case could not be stable, with the number that would do.
+std::vector<std::string> flow_warnings(const FlowInput& flow, const Mixture& mixture);
+
+}  // namespace meltproof::solver

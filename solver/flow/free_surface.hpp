@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Weakly compressible flow of the melt with a free surface: what is not metal has no particles.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/particles/ghosts.hpp"
+#include "solver/particles/kernel.hpp"
+#include "solver/particles/neighbours.hpp"
+#include "solver/terms/continuity.hpp"
+#include "solver/terms/interface.hpp"
+#include "solver/terms/pressure.hpp"
+#include "solver/terms/viscosity.hpp"
+
+namespace meltproof::solver {
+
+/// What keeps particles of a free surface from clumping under tension.
+enum class ClumpingCure {
+  none,
+  repulsion,  ///< a pair pressure below the lattice's distance, see repulsion_pair()
+  transport,  ///< particles move with a transport velocity that evens out their places (Zhang, Hu &
+              ///< Adams 2017), without the momentum that this carries
+};
+
+/// How the melt flows.
+struct FlowSettings {
+  double sound_speed = 50;          ///< c, m s-1: p = c^2 (rho - rho0)
+  double density_diffusion = 0.1;   ///< delta of Molteni & Colagrossi
+  double viscosity_factor = 20;     ///< on the material's real viscosity (paper, note of Table A2)
+  double artificial_viscosity = 0;  ///< alpha of Monaghan
+  Vector gravity{0, 0, -9.81};      ///< m s-2
+  bool surface_tension = true, marangoni = true, recoil = true;
+  ClumpingCure cure = ClumpingCure::repulsion;
+  double repulsion = 2e4;           ///< Pa, k of repulsion_pair()
+  double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
+  double skin = 0.5;                ///< of the Verlet lists, in spacings
+};
+
+/// What the melt is like, per particle; only entries of liquid particles count.
+struct MeltProperties {
+  std::vector<double> viscosity;        ///< Pa s, factor included
+  std::vector<double> surface_tension;  ///< N m-1; of solids too, for its gradient
+  std::vector<double> recoil;           ///< Pa
+};
+
+/// Counts of everything that limited a value, since the start of a run.
+struct LimiterCounts {
+  std::uint64_t wall_pressure = 0;  ///< wall pressures clipped at zero, particle steps
+  std::uint64_t curvature = 0;  ///< curvatures held at what the spacing can hold, particle steps
+  std::uint64_t particle_steps = 0;  ///< of liquid particles, to compare with
+  std::uint64_t wall_steps = 0;      ///< of wall particles, likewise
+};
+
+/// **One step of the flow**, velocity Verlet: half a kick and the drift; then the density at
+/// (x^{n+1}, v^{n+1/2}), because taken from the step before it a drop breathes forty times its own
+/// pressure; then walls, interface and forces; then the other half kick. Sums are gathered over
+/// lists whose order belongs to the particle.
+class FreeSurfaceFlow {
+ public:
+  FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpline& kernel, double spacing,
+                  int dimensions);
+
+  /// To be called when phases, indices or lists have changed: finds liquid and wall particles.
+  void arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
+               const NeighbourList& list);
+  /// To be called when the properties have changed: gradients of the surface tension.
+  void set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
+                      const NeighbourList& list, const MeltProperties& properties);
+
+  /// First half kick and drift of the liquid particles.
+  void kick_and_drift(Particles& particles, double dt);
+  /// Density, forces and second half kick, at the new positions.
+  void finish(Particles& particles, const std::vector<Ghost>& ghosts, const NeighbourList& list,
+              const MeltProperties& properties, double dt);
+
+  /// Forces at the present positions, without advancing anything; needed once at the start and
+  /// whenever indices have changed.
+  void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
+                const NeighbourList& list, const MeltProperties& properties);
+
+  /// Surface area of a particle, m^(d-1): 2 |grad c| V; zero inside. Liquid particles only.
+  const std::vector<double>& area() const { return area_; }
+  const std::vector<double>& pressure() const { return pressure_; }    ///< Pa
+  const std::vector<double>& curvature() const { return curvature_; }  ///< 1/m, at the surface
+  const std::vector<Vector>& normal() const { return normal_; }        ///< outward, zero inside
+  const std::vector<Vector>& acceleration() const { return acceleration_; }  ///< m s-2
+  const std::vector<std::uint32_t>& liquid() const { return liquid_; }
+  const std::vector<std::uint32_t>& wall() const { return wall_; }
+  const LimiterCounts& limiters() const { return limiters_; }
+  const FlowSettings& settings() const { return settings_; }
+
+  /// Which term made the acceleration of particle i no number: a sentence.
+  std::string diagnose(const Particles& particles, std::uint32_t i,
+                       const MeltProperties& properties) const;
+
+ private:
+  /// Positions and motion; one cache line.
+  struct alignas(64) MotionRecord {
+    double x = void_position, y = void_position, z = void_position, vx = 0, vy = 0, vz = 0;
+    double volume = 0;   // m^d
+    double density = 0;  // kg m-3, zero in the solid
+  };
+  /// The interface; one cache line.
+  struct alignas(64) SurfaceRecord {
+    double x = void_position, y = void_position, z = void_position, nx = 0, ny = 0, nz = 0;
+    double tension = 0;   // N m-1
+    double strength = 0;  // |grad c| h, zero where there is no interface
+  };
+  /// Forces; two cache lines.
+  struct alignas(64) ForceRecord {
+    double x = void_position, y = void_position, z = void_position, vx = 0, vy = 0, vz = 0;
+    double volume = 0, pressure = 0;
+    double density = 0;    // kg m-3, zero in the solid
+    double viscosity = 0;  // Pa s
+  };
+
+  void write_motion(const Particles& particles, const std::vector<Ghost>& ghosts);
+  void colour_gradients(const NeighbourList& list, const std::vector<std::uint32_t>& members);
+  void densities(Particles& particles, const NeighbourList& list, double dt);
+  void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
+                     const MeltProperties& properties);
+  void curvatures(const NeighbourList& list);
+  void walls(const std::vector<Ghost>& ghosts, const NeighbourList& list);
+  void forces(const Particles& particles, const NeighbourList& list,
+              const MeltProperties& properties);
+
+  FlowSettings settings_;
+  QuinticSpline kernel_;
+  double spacing_, kernel_at_spacing_;
+  int dimensions_;
+  std::vector<std::uint32_t> liquid_, wall_;
+  std::vector<std::uint32_t> near_ghosts_;  // ghosts of liquid and wall particles
+  std::vector<std::uint8_t> role_;          // 0 neither, 1 liquid, 2 wall
+  std::vector<MotionRecord> motion_;
+  std::vector<SurfaceRecord> surface_;
+  std::vector<ForceRecord> force_;
+  std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
+  std::vector<double> area_, curvature_, pressure_;
+  std::vector<std::uint8_t> limited_;
+  LimiterCounts limiters_;
+};
+
+}  // namespace meltproof::solver

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/particles/lanes.hpp"
+
+namespace meltproof::solver {
+
+/// **Continuity**: d rho_i/dt = rho_i sum_j V_j (v_i - v_j) . grad_i W_ij. Returns one summand
+/// without rho_i, 1/s. (Monaghan 1994)
+/// @param slope_over_r (dW/dr)/r in m^-(d+2); @param approach (v_i - v_j) . r_ij in m2 s-1.
+template <class T>
+T continuity_pair(const T& volume_j, const T& slope_over_r, const T& approach) {
+  return volume_j * slope_over_r * approach;
+}
+
+/// **Density diffusion**: d rho_i/dt += delta h c sum_j V_j 2 (rho_i - rho_j) F_ij, which damps the
+/// checkerboard of densities that continuity leaves. (Molteni & Colagrossi 2009) Returns one
+/// summand without delta h c, kg m-3 m-2. Antisymmetric once multiplied by V_i: volume times
+/// density is only moved about.
+template <class T>
+T density_diffusion_pair(const T& density_i, const T& density_j, const T& volume_j,
+                         const T& gradient_factor) {
+  return 2.0 * volume_j * (density_i - density_j) * gradient_factor;
+}
+
+/// **Repulsion** against clumping under tension at a free surface: an additional pair pressure
+/// k max(0, (W_ij/W(dx))^4 - 1) in Pa, which vanishes on the undisturbed lattice and beyond.
+/// (after Monaghan 2000, without the factor of the pressure)
+template <class T>
+T repulsion_pair(const T& kernel_ratio, double strength) {
+  const T square = kernel_ratio * kernel_ratio;
+  return strength * positive_part(square * square - 1.0);
+}
+
+}  // namespace meltproof::solver
