@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "solver/output/history.hpp"
+#include "solver/output/run_summary.hpp"
 #include "solver/output/snapshot.hpp"
 
 namespace meltproof::solver {
@@ -195,8 +196,6 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
       {"additive_wt_percent_as_particles", 100 * made.additive_mass_fraction},
       {"powder_volume_relative_error", made.powder_volume_error},
       {"reference_temperature_K", reference},
-      {"steady",
-       "not tested in this version: the growth of each length over the window is given beside it"},
       {"energy_absorbed_J", ledger.absorbed},
       {"energy_reflected_J", ledger.reflected},
       {"energy_missed_J", ledger.missed},
@@ -214,7 +213,17 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
       {"end_time_us", 1e6 * engine.time()},
       {"snapshots", snapshots}};
   result = window_json(lines, t, std::move(result));
+  const double track = t.speed * t.exposure;
+  result["steady_state"] = steadiness_json(lines, start_up_length(track) / t.speed, t.exposure);
+  result["steady"] = result["steady_state"]["pool_length"]["sentence"];
   add_fusion_zone(result, t, engine);
+  const Acceptance acceptance = measure_acceptance(
+      engine.particles(),
+      track_acceptance(made.domain.lower, made.domain.upper, track, t.beam_radius));
+  result["acceptance"] = acceptance.json();
+  const Timings timings{{"heat", w.heat},   {"species", w.species}, {"surface", w.surface},
+                        {"state", w.state}, {"lists", w.lists},     {"flow", w.flow}};
+  result["timings"] = timings_json(timings);
   provenance.wall_time = provenance.elapsed();
   result["wall_time_s"] = provenance.wall_time;
   result["particle_steps_per_second"] = static_cast<double>(engine.steps()) *
@@ -224,7 +233,11 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
   result["provenance"] = provenance.json();
   writer.commit(provenance);
   write_file(folder / "history.csv", history_csv(lines));
+  write_file(folder / "input.toml", provenance.resolved_input);
   write_file(folder / "result.json", result.dump(2) + "\n");
+  if (!quiet) {
+    print_run_summary(result, acceptance, timings, provenance, folder);
+  }
   return result;
 }
 

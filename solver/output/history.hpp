@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/output/melt_pool.hpp"
+#include "solver/output/steady_state.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
@@ -20,6 +21,12 @@ struct HistoryLine {
   double absorbed_power = 0;      ///< W, at this moment
   double absorbed = 0, lost = 0;  ///< J, since the start
   double enthalpy_change = 0;     ///< J, since the start
+  double largest_speed = 0;       ///< m s-1, of the melt
+  double mean_speed = 0;          ///< m s-1, mean of |v| over the melt's particles
+  double liquid_volume = 0;       ///< m3, mass over reference density of the melt
+  std::size_t lost_particles = 0;
+  double clumped = 0;          ///< share of the melt nearer than half a spacing to a neighbour
+  double evaporated_mass = 0;  ///< kg, since the start
 };
 
 /// Measures the engine's present state. @param reference_temperature K, the base material's
@@ -38,5 +45,15 @@ struct WindowMean {
 };
 WindowMean window_mean(const std::vector<HistoryLine>& lines, double from, double to,
                        double (*quantity)(const HistoryLine&));
+
+/// Whether the quantity is steady at the end of the exposure, or what it tends to, from the lines
+/// with time in [start_up, until]; see steady_state.hpp.
+SteadyState steadiness(const std::vector<HistoryLine>& lines, double start_up, double until,
+                       double (*quantity)(const HistoryLine&));
+
+/// The same for pool length, width and depth and the length of any liquid, in um: an object per
+/// quantity, named as the columns of history.csv.
+nlohmann::json steadiness_json(const std::vector<HistoryLine>& lines, double start_up,
+                               double until);
 
 }  // namespace meltproof::solver
