@@ -28,19 +28,21 @@ double printed_stripe(double z, double z1, double z2, double spread) {
   return z <= (z1 + z2) / 2 ? std::erfc((z1 - z) / spread) / 2 : std::erfc((z - z2) / spread) / 2;
 }
 
-double stefan_lambda(double stefan) {
-  if (!(stefan > 0)) {
-    throw std::logic_error("a Stefan number is positive");
-  }
+namespace {
+
+/// The root of a function that changes its sign between low and high.
+double root(const std::function<double(double)>& f, double low, double high) {
   gsl_function equation;
-  equation.function = [](double lambda, void* data) {
-    const double target = *static_cast<const double*>(data) / std::sqrt(std::numbers::pi);
-    return lambda * std::exp(lambda * lambda) * std::erf(lambda) - target;
+  equation.function = [](double x, void* data) {
+    return (*static_cast<const std::function<double(double)>*>(data))(x);
   };
-  equation.params = &stefan;
+  auto function = f;
+  equation.params = &function;
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver{
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), &gsl_root_fsolver_free};
-  gsl_root_fsolver_set(solver.get(), &equation, 1e-8, 5.0);
+  if (gsl_root_fsolver_set(solver.get(), &equation, low, high) != GSL_SUCCESS) {
+    throw std::logic_error("an exact solution has no root where it is looked for");
+  }
   for (int i = 0; i < 200; ++i) {
     gsl_root_fsolver_iterate(solver.get());
     if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
@@ -49,6 +51,39 @@ double stefan_lambda(double stefan) {
     }
   }
   return gsl_root_fsolver_root(solver.get());
+}
+
+}  // namespace
+
+double stefan_lambda(double stefan) {
+  if (!(stefan > 0)) {
+    throw std::logic_error("a Stefan number is positive");
+  }
+  const double target = stefan / std::sqrt(std::numbers::pi);
+  return root(
+      [&](double lambda) { return lambda * std::exp(lambda * lambda) * std::erf(lambda) - target; },
+      1e-8, 5.0);
+}
+
+double neumann_lambda(double stefan, double superheat, double conductivity_ratio) {
+  const double ratio = std::sqrt(conductivity_ratio);
+  return root(
+      [&](double l) {
+        const double wall = std::exp(-l * l) / std::erf(l);
+        const double far =
+            superheat * ratio * std::exp(-l * l / (ratio * ratio)) / std::erfc(l / ratio);
+        return stefan * (wall - far) - l * std::sqrt(std::numbers::pi);
+      },
+      1e-8, 5.0);
+}
+
+double NeumannSolution::operator()(double x, double time) const {
+  const double near = 2 * std::sqrt(diffusivity_wall * time);
+  if (x < lambda * near) {
+    return wall + (melting - wall) * std::erf(x / near) / std::erf(lambda);
+  }
+  return far + (melting - far) * std::erfc(x / (2 * std::sqrt(diffusivity_far * time))) /
+                   std::erfc(lambda * std::sqrt(diffusivity_wall / diffusivity_far));
 }
 
 double stefan_temperature(double x, double time, double diffusivity, double lambda, double wall,

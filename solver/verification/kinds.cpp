@@ -8,16 +8,19 @@
 
 #include "base/error.hpp"
 #include "solver/verification/problems.hpp"
+#include "solver/verification/thermal_phase.hpp"
+#include "solver/verification/thermal_source.hpp"
+#include "solver/verification/thermal_surface.hpp"
 
 namespace meltproof::solver {
 
 const std::vector<VerificationKind>& verification_kinds() {
   // One line per kind, in the order of the suite's table.
   static const std::vector<VerificationKind> kinds = {
-      {"species_stripe", run_species_stripe},
-      {"conduction_slab", run_conduction_slab},
-      {"conduction_contact", run_conduction_contact},
-      {"stefan", run_stefan},
+      {"species_stripe", run_species_stripe},           {"conduction_slab", run_conduction_slab},
+      {"conduction_contact", run_conduction_contact},   {"stefan", run_stefan},
+      {"stefan_two_phase", run_stefan_two_phase},       {"moving_source", run_moving_source},
+      {"evaporative_cooling", run_evaporative_cooling},
   };
   return kinds;
 }

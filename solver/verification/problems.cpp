@@ -4,94 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/step/engine.hpp"
 #include "solver/verification/exact.hpp"
+#include "solver/verification/setup.hpp"
 
 namespace meltproof::solver {
+
 namespace {
 
-/// Every number a dimensionless problem does not care about is a round one.
-constexpr double density = 1000, specific_heat = 1000;
-
-Property constant(double value, const std::string& unit) {
-  return {.unit = unit,
-          .source = "verification case",
-          .note = "",
-          .pieces = {{.from = 0, .to = 1e6, .constant = value}},
-          .floor = 0};
-}
-
-/// A material of constant properties. The liquidus decides whether it is melt: below all
-/// temperatures for species, above for pure conduction.
-Material plain_material(const std::string& name, double conductivity, double solidus,
-                        double liquidus) {
-  Material m;
-  m.name = name;
-  m.solidus = solidus;
-  m.liquidus = liquidus;
-  m.boiling = 1e6;
-  m.density = density;
-  m.molar_mass = 0.05;
-  m.latent_heat_vaporisation = 1e6;
-  m.enthalpy = {{0, 298.15, 1000}, {-298.15 * specific_heat, 0, (1000 - 298.15) * specific_heat}};
-  m.conductivity = constant(conductivity, "W m-1 K-1");
-  m.viscosity = constant(1e-3, "Pa s");
-  m.surface_tension = constant(1, "N m-1");
-  return m;
-}
-
-Diffusivity constant_diffusivity(double value) {
-  Diffusivity law;
-  law.prefactor = value;
-  return law;
-}
-
-/// A row of n particles along x, periodic across: the sums are those of three dimensions.
-Particles make_row(std::size_t n, double spacing) {
-  Particles row;
-  row.spacing = spacing;
-  const double volume = spacing * spacing * spacing;
-  for (std::size_t i = 0; i < n; ++i) {
-    row.add(static_cast<std::int64_t>(i),
-            {(static_cast<double>(i) + 0.5) * spacing, spacing / 2, spacing / 2}, density * volume,
-            volume, 0, 0, Origin::plate);
-  }
-  return row;
-}
-
-Domain row_domain(double length, double spacing, Face lower, Face upper) {
-  Domain domain;
-  domain.upper = {length, spacing, spacing};
-  domain.face = {
-      {{lower, upper}, {Face::periodic, Face::periodic}, {Face::periodic, Face::periodic}}};
-  return domain;
-}
-
-void run_until(Engine& engine, double time) {
-  while (engine.time() < time) {
-    engine.step(time);
-  }
-}
-
-/// A run with its counts, whose profile is a temperature.
-VerificationRun thermal_run(const Engine& engine) {
-  VerificationRun run;
-  run.steps = engine.steps();
-  run.particles = engine.particles().size();
-  run.value_name = "temperature";
-  run.value_unit = "K";
-  return run;
-}
-
-/// Relative L2 norm of value - exact; `scale` is what the exact solution is measured from.
-double l2_error(const VerificationRun& run, double scale_offset) {
-  double difference = 0, reference = 0;
-  for (std::size_t i = 0; i < run.value.size(); ++i) {
-    difference += std::pow(run.value[i] - run.exact[i], 2);
-    reference += std::pow(run.exact[i] - scale_offset, 2);
-  }
-  return std::sqrt(difference / reference);
-}
+constexpr double density = PlainMatter::density, specific_heat = PlainMatter::specific_heat;
 
 }  // namespace
 
