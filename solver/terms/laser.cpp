@@ -29,6 +29,75 @@ std::vector<double> slices(double centre, double radius, double first, double wi
   return share;
 }
 
+/// A square of columns that holds the beam's footprint, and the share of the power in each.
+struct Footprint {
+  std::int64_t first_x = 0, first_y = 0;
+  std::size_t count = 0;
+  std::vector<double> share;  ///< row-major [y][x]; their sum is one
+};
+
+/// Places the square; the shares are still zero.
+Footprint around(const Laser& laser, double x, double reach, const SurfaceColumns& columns) {
+  Footprint f;
+  f.count = static_cast<std::size_t>(2 * std::ceil(reach / columns.width)) + 1;
+  f.first_x = static_cast<std::int64_t>(std::floor((x - reach - columns.lower_x) / columns.width));
+  f.first_y =
+      static_cast<std::int64_t>(std::floor((laser.y - reach - columns.lower_y) / columns.width));
+  f.share.resize(f.count * f.count);
+  return f;
+}
+
+Footprint vertical_footprint(const Laser& laser, double x, const SurfaceColumns& columns) {
+  Footprint f = around(laser, x, 3 * laser.radius, columns);
+  const auto lower = [&](double edge, std::int64_t first) {
+    return edge + static_cast<double>(first) * columns.width;
+  };
+  const auto share_x =
+      slices(x, laser.radius, lower(columns.lower_x, f.first_x), columns.width, f.count);
+  const auto share_y =
+      slices(laser.y, laser.radius, lower(columns.lower_y, f.first_y), columns.width, f.count);
+  for (std::size_t j = 0; j < f.count; ++j) {
+    for (std::size_t i = 0; i < f.count; ++i) {
+      f.share[j * f.count + i] = share_x[i] * share_y[j];
+    }
+  }
+  return f;
+}
+
+Footprint inclined_footprint(const Laser& laser, double x, const SurfaceColumns& columns) {
+  Footprint f = around(laser, x, 3 * laser.radius / std::cos(laser.incidence), columns);
+  const double along_x = std::cos(laser.azimuth), along_y = std::sin(laser.azimuth);
+  const double shortening = std::cos(laser.incidence);
+  // Distance from the axis: lengths along the azimuth are seen foreshortened.
+  const auto intensity = [&](double dx, double dy) {
+    const double u = (dx * along_x + dy * along_y) * shortening, w = dy * along_x - dx * along_y;
+    return std::exp(-2 * (u * u + w * w) / (laser.radius * laser.radius));
+  };
+  const double node = std::sqrt(0.6) / 2;
+  const double nodes[3] = {-node, 0, node}, weights[3] = {5. / 18, 8. / 18, 5. / 18};
+  double sum = 0;
+  for (std::size_t j = 0; j < f.count; ++j) {
+    for (std::size_t i = 0; i < f.count; ++i) {
+      double& share = f.share[j * f.count + i];
+      for (int b = 0; b < 3; ++b) {
+        for (int a = 0; a < 3; ++a) {
+          const double column_x = static_cast<double>(f.first_x + static_cast<std::int64_t>(i));
+          const double column_y = static_cast<double>(f.first_y + static_cast<std::int64_t>(j));
+          share +=
+              weights[a] * weights[b] *
+              intensity(columns.lower_x + (column_x + 0.5 + nodes[a]) * columns.width - x,
+                        columns.lower_y + (column_y + 0.5 + nodes[b]) * columns.width - laser.y);
+        }
+      }
+      sum += share;
+    }
+  }
+  for (double& share : f.share) {
+    share /= sum;
+  }
+  return f;
+}
+
 }  // namespace
 
 LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& columns,
@@ -37,23 +106,15 @@ LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& col
   if (!laser.on(time) || laser.power <= 0) {
     return budget;
   }
-  const double reach = 3 * laser.radius, width = columns.width;
-  const auto count = static_cast<std::size_t>(2 * std::ceil(reach / width)) + 1;
-  const auto first_x =
-      static_cast<std::int64_t>(std::floor((laser.x(time) - reach - columns.lower_x) / width));
-  const auto first_y =
-      static_cast<std::int64_t>(std::floor((laser.y - reach - columns.lower_y) / width));
-  const auto share_x = slices(laser.x(time), laser.radius,
-                              columns.lower_x + static_cast<double>(first_x) * width, width, count);
-  const auto share_y = slices(laser.y, laser.radius,
-                              columns.lower_y + static_cast<double>(first_y) * width, width, count);
+  const Footprint f = laser.incidence == 0 ? vertical_footprint(laser, laser.x(time), columns)
+                                           : inclined_footprint(laser, laser.x(time), columns);
   // One thread, always the same order: the beam covers a few thousand columns at most.
-  for (std::size_t j = 0; j < count; ++j) {
-    const std::int64_t iy = first_y + static_cast<std::int64_t>(j);
+  for (std::size_t j = 0; j < f.count; ++j) {
+    const std::int64_t iy = f.first_y + static_cast<std::int64_t>(j);
     const bool inside_y = iy >= 0 && iy < static_cast<std::int64_t>(columns.count_y);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double incident = laser.power * share_x[i] * share_y[j];
-      const std::int64_t ix = first_x + static_cast<std::int64_t>(i);
+    for (std::size_t i = 0; i < f.count; ++i) {
+      const double incident = laser.power * f.share[j * f.count + i];
+      const std::int64_t ix = f.first_x + static_cast<std::int64_t>(i);
       const bool inside = inside_y && ix >= 0 && ix < static_cast<std::int64_t>(columns.count_x);
       const std::uint32_t top =
           inside ? columns.at(static_cast<std::size_t>(ix), static_cast<std::size_t>(iy))

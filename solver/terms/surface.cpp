@@ -6,7 +6,8 @@
 
 namespace meltproof::solver {
 
-SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper) {
+SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper,
+                            const Slant& slant) {
   SurfaceColumns columns;
   columns.lower_x = lower[0];
   columns.lower_y = lower[1];
@@ -20,14 +21,15 @@ SurfaceColumns find_surface(const Particles& particles, const Vector& lower, con
   };
   // Column axes within [-spacing/2, spacing/2) of the particle: always two by two. Rounding the
   // lower edge keeps that count when a particle sits exactly between columns, as on the starting
-  // lattice.
+  // lattice; the small addition does so where a slant puts a layer half a column off.
   const auto first_column = [&](double x, double edge) {
     return static_cast<std::int64_t>(
-        std::llround((x - particles.spacing / 2 - edge) / columns.width));
+        std::llround((x - particles.spacing / 2 - edge) / columns.width + 1e-6));
   };
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
-    const std::int64_t x0 = first_column(particles.position[i][0], columns.lower_x);
-    const std::int64_t y0 = first_column(particles.position[i][1], columns.lower_y);
+    const Vector& at = particles.position[i];
+    const std::int64_t x0 = first_column(at[0] + slant.x * at[2], columns.lower_x);
+    const std::int64_t y0 = first_column(at[1] + slant.y * at[2], columns.lower_y);
     for (std::int64_t iy = std::max<std::int64_t>(0, y0);
          iy < std::min<std::int64_t>(y0 + 2, static_cast<std::int64_t>(columns.count_y)); ++iy) {
       for (std::int64_t ix = std::max<std::int64_t>(0, x0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The illuminated surface: columns of half a spacing, each with the topmost metal particle it
-// meets.
+// The illuminated surface: columns of half a spacing along the beam, each with the first metal
+// particle that light in it meets.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,17 @@
 
 namespace meltproof::solver {
 
-/// Columns along z over the domain's plan view. A particle fills the columns whose axes pass within
-/// half a spacing of it along x and y; the highest one sees the beam, so particles shadow what is
-/// below them and neither normals nor the decomposition matter.
+/// How far a slanted column moves along x and y for each metre that it descends: the beam's
+/// horizontal over its downward direction. Zero for a vertical beam.
+struct Slant {
+  double x = 0, y = 0;
+};
+
+/// Columns along the beam over the domain's plan view, numbered by where they meet the plane z = 0.
+/// A particle, moved along the beam onto that plane, fills the columns whose axes pass within half
+/// a spacing of it along x and y; the highest one is met first, so particles shadow what is behind
+/// them and neither normals nor the decomposition matter. Up to 45 degrees no light slips between
+/// the layers of a lattice.
 struct SurfaceColumns {
   static constexpr std::uint32_t none = 0xffffffff;  ///< no metal in this column
   double lower_x = 0, lower_y = 0;                   ///< m
@@ -25,7 +33,8 @@ struct SurfaceColumns {
 
 /// Finds the topmost particle of every column; of equally high ones the one with the smaller
 /// identity.
-/// @param lower, upper plan view of the domain in m.
-SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper);
+/// @param lower, upper plan view of the domain in m; @param slant of the columns, of the beam.
+SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper,
+                            const Slant& slant = {});
 
 }  // namespace meltproof::solver

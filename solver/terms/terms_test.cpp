@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -145,6 +146,114 @@ TEST(Laser, WhatLiesInTheShadowGetsNothing) {
   EXPECT_EQ(power[below], 0);
   EXPECT_GT(power.back(), 0);
   EXPECT_GT(power[below - 1], 0);
+}
+
+TEST(Laser, AnInclinedBeamLosesNothing) {
+  const double dx = 10e-6;
+  Particles particles = plate(40, 20, dx);
+  for (std::int64_t i = 0; i < 60; ++i) {  // some loose grains above the plate
+    particles.add(
+        1000 + i,
+        {static_cast<double>((37 * i) % 400) * 1e-6, static_cast<double>((91 * i) % 200) * 1e-6,
+         static_cast<double>((7 * i) % 50) * 1e-6},
+        1e-12, dx * dx * dx, 0, 0, Origin::base_powder);
+  }
+  std::vector<double> absorptivity(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    absorptivity[i] = i % 3 == 0 ? 0.09 : 0.4;
+  }
+  for (const double incidence : {0.05, 0.3, M_PI / 4}) {
+    for (const double azimuth : {0.0, 0.65, M_PI / 2, 4.0}) {
+      const Laser laser{.power = 175,
+                        .radius = 40e-6,
+                        .speed = 0.375,
+                        .start_x = 160e-6,
+                        .y = 100e-6,
+                        .exposure = 1,
+                        .incidence = incidence,
+                        .azimuth = azimuth};
+      const auto columns = find_surface(particles, {0, 0, 0}, {40 * dx, 20 * dx, 0}, laser.slant());
+      std::vector<double> power(particles.size(), 0.0);
+      const LaserBudget budget = irradiate(laser, 0, columns, absorptivity, power);
+      EXPECT_NEAR(budget.absorbed + budget.reflected + budget.missed, 175, 175e-12);
+      EXPECT_NEAR(std::accumulate(power.begin(), power.end(), 0.0), budget.absorbed, 175e-12);
+      EXPECT_GT(budget.absorbed, 0.05 * 175);
+    }
+  }
+}
+
+TEST(Laser, TheFootprintOfAnInclinedBeamIsAnEllipse) {
+  const double dx = 2e-6, radius = 30e-6, incidence = 0.6, azimuth = 0.5;
+  const Particles particles = plate(200, 200, dx);
+  const Laser laser{.power = 100,
+                    .radius = radius,
+                    .speed = 1,
+                    .start_x = 200e-6,
+                    .y = 200e-6,
+                    .exposure = 1,
+                    .incidence = incidence,
+                    .azimuth = azimuth};
+  const auto columns = find_surface(particles, {0, 0, 0}, {200 * dx, 200 * dx, 0}, laser.slant());
+  std::vector<double> power(particles.size(), 0.0);
+  const LaserBudget budget =
+      irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  EXPECT_NEAR(budget.absorbed, 100, 1e-10);
+  // Centres of the top layer lie half a spacing below z = 0, where the axis has moved on a little.
+  const double shift = dx / 2 * std::tan(incidence);
+  double along = 0, across = 0, mean = 0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    const double x = particles.position[i][0] - 200e-6, y = particles.position[i][1] - 200e-6;
+    const double u = x * std::cos(azimuth) + y * std::sin(azimuth) - shift;
+    const double w = y * std::cos(azimuth) - x * std::sin(azimuth);
+    mean += power[i] * u / 100;
+    along += power[i] * u * u / 100;
+    across += power[i] * w * w / 100;
+    EXPECT_TRUE(power[i] == 0 || particles.position[i][2] > -dx) << "the layer below sees nothing";
+  }
+  EXPECT_NEAR(mean, 0, 0.3 * dx);
+  EXPECT_NEAR(across / (radius * radius / 4), 1, 5e-3);
+  EXPECT_NEAR(along / (std::pow(radius / std::cos(incidence), 2) / 4), 1, 5e-3);
+}
+
+TEST(Laser, AnAlmostVerticalBeamIsTheVerticalOne) {
+  const double dx = 5e-6;
+  const Particles particles = plate(60, 60, dx);
+  const auto columns = find_surface(particles, {0, 0, 0}, {60 * dx, 60 * dx, 0});
+  Laser laser{
+      .power = 100, .radius = 40e-6, .speed = 1, .start_x = 151e-6, .y = 149e-6, .exposure = 1};
+  const std::vector<double> absorptivity(particles.size(), 0.4);
+  std::vector<double> vertical(particles.size(), 0.0), inclined(particles.size(), 0.0);
+  irradiate(laser, 0, columns, absorptivity, vertical);
+  laser.incidence = 1e-9;
+  irradiate(laser, 0, columns, absorptivity, inclined);
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    EXPECT_NEAR(vertical[i], inclined[i], 1e-5);
+  }
+}
+
+TEST(Laser, TheShadowOfAGrainLiesAlongTheBeam) {
+  const double dx = 10e-6;
+  Particles particles = plate(20, 10, dx);
+  // 50 um above the plate's top layer, at 45 degrees along x: the shadow falls 50 um further on.
+  particles.add(10000, {55e-6, 45e-6, 45e-6}, 1e-12, dx * dx * dx, 0, 0, Origin::base_powder);
+  const Laser laser{.power = 100,
+                    .radius = 60e-6,
+                    .speed = 1,
+                    .start_x = 100e-6,
+                    .y = 45e-6,
+                    .exposure = 1,
+                    .incidence = M_PI / 4,
+                    .azimuth = 0};
+  const auto columns = find_surface(particles, {0, 0, 0}, {20 * dx, 10 * dx, 0}, laser.slant());
+  std::vector<double> power(particles.size(), 0.0);
+  irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  for (std::size_t i = 0; i + 1 < particles.size(); ++i) {
+    const auto& at = particles.position[i];
+    if (at[2] > -dx && std::abs(at[1] - 45e-6) < 1e-9 && at[0] > 20e-6 && at[0] < 180e-6) {
+      EXPECT_EQ(power[i] == 0, std::abs(at[0] - 105e-6) < 1e-9) << at[0];
+    }
+  }
+  EXPECT_GT(power.back(), 0);
 }
 
 TEST(SurfaceLoss, EvaporationAtTheBoilingPointIsTheHertzKnudsenFlux) {
