@@ -53,7 +53,12 @@ Input declare(TrackCase& t) {
           {.name = "form",
            .about =
                "Repaired property tables, or as the paper prints them where that can be evaluated.",
-           .choices = {"repaired", "as_printed"}});
+           .choices = {"repaired", "as_printed"}})
+      .text(t.density,
+            {.name = "density",
+             .about = "One reference density as the paper's Table 3 has it, or each material's own "
+                      "real_density: powder grains of AlSi10Mg then weigh a third.",
+             .choices = {"uniform", "own"}});
 
   InputTable laser("laser", "The beam (paper, Table 2).");
   laser
@@ -91,7 +96,20 @@ Input declare(TrackCase& t) {
            .unit = "1",
            .about = "Of the base material instead of its table's value; negative: the table's.",
            .minimum = -1,
-           .maximum = 1});
+           .maximum = 1})
+      .quantity(t.incidence_angle,
+                {.name = "incidence_angle",
+                 .unit = "rad",
+                 .about = "Between the beam and the vertical; its footprint is an ellipse.",
+                 .minimum = 0,
+                 .maximum = 0.7854})
+      .quantity(t.incidence_azimuth,
+                {.name = "incidence_azimuth",
+                 .unit = "rad",
+                 .about = "Horizontal direction in which an inclined beam travels, from the scan's "
+                          "direction towards y.",
+                 .minimum = -6.2832,
+                 .maximum = 6.2832});
 
   InputTable domain("domain", "The box around the track; its faces let nothing through.");
   domain
@@ -131,7 +149,18 @@ Input declare(TrackCase& t) {
       .quantity(t.ambient_pressure, {.name = "ambient_pressure",
                                      .unit = "Pa",
                                      .about = "At which the boiling temperature holds.",
-                                     .minimum = 1});
+                                     .minimum = 1})
+      .text(t.vapour_heat,
+            {.name = "vapour_heat",
+             .about = "What leaves with the vapour: the latent heat, since the particles keep their "
+                      "mass, or also its sensible heat above 298.15 K.",
+             .choices = {"latent", "latent_and_sensible"}})
+      .quantity(t.heat_transfer_coefficient,
+                {.name = "heat_transfer_coefficient",
+                 .unit = "W m-2 K-1",
+                 .about = "Of convection to the gas; the paper has none, some 10 to 100 are usual "
+                          "and small beside radiation.",
+                 .minimum = 0});
 
   InputTable output("output", "What is written, and when.");
   output
@@ -205,9 +234,17 @@ Model make_model(const TrackCase& t, const Domain& domain) {
                       .speed = t.speed,
                       .start_x = 0,
                       .y = 0,
-                      .exposure = t.exposure};
-  model.surface_loss =
-      SurfaceLossSettings{t.evaporation, t.radiation, t.ambient_temperature, t.ambient_pressure};
+                      .exposure = t.exposure,
+                      .incidence = t.incidence_angle,
+                      .azimuth = t.incidence_azimuth};
+  model.surface_loss = SurfaceLossSettings{
+      .evaporation = t.evaporation,
+      .radiation = t.radiation,
+      .ambient_temperature = t.ambient_temperature,
+      .ambient_pressure = t.ambient_pressure,
+      .heat_transfer_coefficient = t.heat_transfer_coefficient,
+      .vapour_heat = t.vapour_heat == "latent" ? VapourHeat::latent
+                                               : VapourHeat::latent_and_sensible};
   model.flow = flow_settings(t.flow, t.form == "as_printed" ? 20 : 1);
   model.freezing_fraction = t.flow.freezing_fraction;
   return model;

@@ -24,10 +24,12 @@ struct TrackCase {
   std::filesystem::path base, additive, diffusivity_laws;
   std::string diffusivity_law;
   std::string form = "repaired";
+  std::string density = "uniform";  ///< "uniform", or "own": each material's real_density
 
   double power = 175, beam_radius = 40e-6, speed = 0.375, exposure = 1.04e-3;
   std::string radius_definition = "1/e2";  ///< what beam_radius means: "1/e2" or "D4sigma/2"
   double absorptivity = -1;                ///< of the base material; negative: the material's own
+  double incidence_angle = 0, incidence_azimuth = 0;  ///< rad
 
   double before = 150e-6, behind = 150e-6, width = 400e-6, depth = 200e-6;
 
@@ -35,6 +37,8 @@ struct TrackCase {
   std::string species_factor = "consistent", species_scheme = "as_printed",
               species_operator = "fourth";
   double ambient_temperature = 293.15, ambient_pressure = 101325;
+  double heat_transfer_coefficient = 0;  ///< W m-2 K-1
+  std::string vapour_heat = "latent";    ///< or "latent_and_sensible"
 
   FlowInput flow;
 

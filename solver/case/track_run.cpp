@@ -25,7 +25,12 @@ Mixture read_mixture(const TrackCase& t) {
   if (t.absorptivity >= 0) {
     base.absorptivity = t.absorptivity;
   }
-  return {base, read_material(t.additive, form)};
+  Material additive = read_material(t.additive, form);
+  if (t.density == "own") {
+    base.density = base.real_density;
+    additive.density = additive.real_density;
+  }
+  return {base, additive};
 }
 
 void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engine,

@@ -64,7 +64,8 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   for_each_particle(n, [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (model_.laser || model_.surface_loss) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper);
+    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
+                            model_.laser ? model_.laser->slant() : Slant{});
   }
   check_numbers();
   if (flow_) {
@@ -365,7 +366,8 @@ double Engine::step(double until) {
   const std::size_t n = particles_.size();
   Stopwatch watch;
   if (flow_ && (model_.laser || model_.surface_loss)) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper);
+    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
+                            model_.laser ? model_.laser->slant() : Slant{});
   }
   const double surface_rate = lose_surface_heat();
   int flow_steps = 0;
