@@ -164,6 +164,13 @@ Input declare(TrackCase& t) {
 
   InputTable output("output", "What is written, and when.");
   output
+      .quantity(t.pool_temperature,
+                {.name = "pool_temperature",
+                 .unit = "K",
+                 .about = "The isotherm that outlines the melt pool, as a measurement defines it; 0: "
+                          "the liquidus of the base material. The fusion zone keeps the liquidus.",
+                 .minimum = 0,
+                 .maximum = 6000})
       .quantity(t.frame_rate,
                 {.name = "frame_rate",
                  .unit = "Hz",

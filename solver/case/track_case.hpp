@@ -42,6 +42,7 @@ struct TrackCase {
 
   FlowInput flow;
 
+  double pool_temperature = 0;       ///< K, outlines the pool; 0: the base material's liquidus
   double frame_rate = 9762.5;        ///< Hz, of the snapshots
   double history_interval = 5e-6;    ///< s
   double averaging_window = 200e-6;  ///< s, before the beam goes off

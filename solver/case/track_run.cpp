@@ -33,6 +33,10 @@ Mixture read_mixture(const TrackCase& t) {
   return {base, additive};
 }
 
+double pool_isotherm(const TrackCase& t, const Mixture& mixture) {
+  return t.pool_temperature > 0 ? t.pool_temperature : mixture.liquidus(0);
+}
+
 void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engine,
                  const Discretisation& made) {
   writer.attribute("title", t.title);
@@ -45,8 +49,8 @@ void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engin
   writer.write("exposure", t.exposure, "s", "the beam is on from 0 to here");
   writer.write("additive_mass_fraction", made.bed_additive_mass_fraction, "1",
                "of the powder blend as spheres");
-  writer.write("reference_temperature", engine.mixture().liquidus(0), "K",
-               "liquidus of the base material");
+  writer.write("reference_temperature", pool_isotherm(t, engine.mixture()), "K",
+               "outlines the melt pool");
   writer.write("initial_temperature", t.initial_temperature, "K", "of plate and powder");
   writer.write("domain/lower", std::span<const double>(made.domain.lower), {3}, "m",
                "lower corner of the domain");
@@ -135,7 +139,7 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
 
   ArtifactWriter writer(folder / "run.h5", "meltproof run");
   write_facts(writer, t, engine, made);
-  const double reference = mixture.liquidus(0), start_enthalpy = engine.total_enthalpy(),
+  const double reference = pool_isotherm(t, mixture), start_enthalpy = engine.total_enthalpy(),
                start_additive = engine.total_additive_mass();
   std::vector<HistoryLine> lines{measure(engine, reference, start_enthalpy)};
   std::size_t snapshots = 0, history = 1;
