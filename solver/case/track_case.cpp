@@ -100,7 +100,8 @@ Input declare(TrackCase& t) {
       .quantity(t.incidence_angle,
                 {.name = "incidence_angle",
                  .unit = "rad",
-                 .about = "Between the beam and the vertical; its footprint is an ellipse.",
+                 .about = "Between the beam and the vertical, as \"20 degree\"; its footprint is "
+                          "an ellipse.",
                  .minimum = 0,
                  .maximum = 0.7854})
       .quantity(t.incidence_azimuth,
