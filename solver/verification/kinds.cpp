@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "solver/verification/laser_budget.hpp"
 #include "solver/verification/problems.hpp"
 #include "solver/verification/thermal_phase.hpp"
 #include "solver/verification/thermal_source.hpp"
@@ -21,6 +22,7 @@ const std::vector<VerificationKind>& verification_kinds() {
       {"conduction_contact", run_conduction_contact},   {"stefan", run_stefan},
       {"stefan_two_phase", run_stefan_two_phase},       {"moving_source", run_moving_source},
       {"evaporative_cooling", run_evaporative_cooling},
+      {"laser_budget", run_laser_budget},
   };
   return kinds;
 }
