@@ -13,6 +13,7 @@
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "solver/output/history.hpp"
+#include "solver/output/paraview.hpp"
 #include "solver/output/run_summary.hpp"
 #include "solver/output/snapshot.hpp"
 
@@ -241,6 +242,7 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
   result["revision"] = code_revision();
   result["provenance"] = provenance.json();
   writer.commit(provenance);
+  write_xdmf(folder / "run.h5");
   write_file(folder / "history.csv", history_csv(lines));
   write_file(folder / "input.toml", provenance.resolved_input);
   write_file(folder / "result.json", result.dump(2) + "\n");

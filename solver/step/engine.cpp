@@ -293,8 +293,8 @@ double Engine::lose_surface_heat() {
   return loss_.fastest_rate;
 }
 
-/// The step by all criteria, and into how many steps of the flow it falls.
-double Engine::choose_step(double until, double surface_rate, int& flow_steps) {
+/// The step by all criteria, where it ends, and into how many steps of the flow it falls.
+Engine::Step Engine::choose_step(double until, double surface_rate) const {
   const std::size_t n = particles_.size();
   StepExtremes extremes;
   extremes.smoothing_length = kernel_.smoothing_length;
@@ -307,8 +307,9 @@ double Engine::choose_step(double until, double surface_rate, int& flow_steps) {
     extremes.species_diffusivity =
         block_max(n, 0.0, [&](std::size_t i) { return diffusivity_[i]; });
   }
-  const double thermal = step_limits(extremes).smallest();
-  double dt = thermal, flow_limit = std::numeric_limits<double>::infinity();
+  Step step;
+  step.limits = step_limits(extremes);
+  double dt = step.limits.smallest(), flow_limit = std::numeric_limits<double>::infinity();
   if (flow_ && !flow_->liquid().empty()) {
     StepExtremes motion;
     motion.smoothing_length = kernel_.smoothing_length;
@@ -332,13 +333,10 @@ double Engine::choose_step(double until, double surface_rate, int& flow_steps) {
     // Within one thermal step nothing moves by more than a quarter of a spacing.
     dt = std::min({dt, model_.flow_steps * flow_limits.smallest(),
                    motion.speed > 0 ? 0.25 * particles_.spacing / motion.speed : dt});
-    limits_ = flow_limits;
-    const StepLimits rest = step_limits(extremes);
-    limits_.thermal = rest.thermal;
-    limits_.species = rest.species;
-    limits_.surface = rest.surface;
-  } else {
-    limits_ = step_limits(extremes);
+    step.limits.acoustic = flow_limits.acoustic;
+    step.limits.viscous = flow_limits.viscous;
+    step.limits.capillary = flow_limits.capillary;
+    step.limits.gravity = flow_limits.gravity;
   }
   if (!std::isfinite(dt)) {
     dt = until - time_;
@@ -353,11 +351,16 @@ double Engine::choose_step(double until, double surface_rate, int& flow_steps) {
   // A remainder much shorter than a step is shared with the step before it.
   if (time_ + dt >= end) {
     dt = end - time_;
-  } else if (time_ + 2 * dt > end) {
-    dt = (end - time_) / 2;
+    step.end = end;
+  } else {
+    if (time_ + 2 * dt > end) {
+      dt = (end - time_) / 2;
+    }
+    step.end = time_ + dt;
   }
-  flow_steps = std::max(1, static_cast<int>(std::ceil(dt / flow_limit)));
-  return dt;
+  step.size = dt;
+  step.flow_steps = std::max(1, static_cast<int>(std::ceil(dt / flow_limit)));
+  return step;
 }
 
 double Engine::step(double until) {
@@ -370,8 +373,9 @@ double Engine::step(double until) {
                             model_.laser ? model_.laser->slant() : Slant{});
   }
   const double surface_rate = lose_surface_heat();
-  int flow_steps = 0;
-  const double dt = choose_step(until, surface_rate, flow_steps);
+  const Step step = choose_step(until, surface_rate);
+  const double dt = step.size;
+  limits_ = step.limits;
   beam_ = {};
   if (model_.laser && model_.laser->on(time_)) {
     // The beam stands where it is in the middle of the step.
@@ -402,15 +406,10 @@ double Engine::step(double until) {
   ledger_.convected += dt * loss_.convection;
   ledger_.evaporated_mass += dt * loss_.mass_rate;
   if (flow_) {
-    advance_flow(dt, flow_steps);
+    advance_flow(dt, step.flow_steps);
   }
   refresh_ghosts();
-  const double next = time_ + dt;
-  // Rounding must not leave a step of nothing behind.
-  time_ = std::abs(next - until) < 1e-12 * until ? until : next;
-  if (model_.laser && std::abs(time_ - model_.laser->exposure) < 1e-12 * time_) {
-    time_ = model_.laser->exposure;
-  }
+  time_ = step.end;
   ++steps_;
   check_numbers();
   return dt;

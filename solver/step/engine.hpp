@@ -98,7 +98,12 @@ class Engine {
   void advance_species(double dt);
   void place_records();
   double lose_surface_heat();
-  double choose_step(double until, double surface_rate, int& flow_steps);
+  struct Step {
+    double size = 0, end = 0;  // s
+    int flow_steps = 1;
+    StepLimits limits;
+  };
+  Step choose_step(double until, double surface_rate) const;
   void note_phase_times(std::size_t i, double old_enthalpy, double old_temperature, double dt);
 
   // Flow, in engine_flow.cpp
