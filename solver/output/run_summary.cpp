@@ -25,6 +25,8 @@ AcceptanceSettings track_acceptance(const Vector& lower, const Vector& upper, do
   AcceptanceSettings s;
   s.lower = lower;
   s.upper = upper;
+  // Metal may stand and spatter above the layer; the engine takes it out half a millimetre higher.
+  s.upper[2] += 0.5e-3;
   s.from = start_up_length(track_length);
   s.to = 0.8 * track_length;
   s.width = beam_radius;
