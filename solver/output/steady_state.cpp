@@ -187,7 +187,7 @@ SteadyState judge_steadiness(const std::vector<double>& time, const std::vector<
   } else {
     s.verdict = change + reach <= settings.tolerance * mean ? "steady" : "undecided";
   }
-  if (s.growth > 0 && !s.steady()) {
+  if (s.verdict == "growing" || (s.verdict == "undecided" && s.change() > s.u_change())) {
     add_limit(s, all);
   }
   return s;

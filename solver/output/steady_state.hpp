@@ -56,8 +56,9 @@ struct SteadyState {
   double coverage = 0;              ///< factor from u to the interval that decided
 
   /// Fit of L(t) = L_inf (1 - exp(-t / tau)) to everything after the start-up; t counts from the
-  /// start of the series' clock. Only where it holds: one time constant has passed, and u(L_inf)
-  /// is below a quarter of L_inf. The exponential is an assumption; `fit_residual` against
+  /// start of the series' clock. Only where the series grows, or by more than its uncertainty while
+  /// undecided, and where the fit holds: one time constant has passed, and u(L_inf) is below a
+  /// quarter of L_inf. The exponential is an assumption; `fit_residual` against
   /// `deviation` shows how well it holds.
   bool has_limit = false;
   double limit = 0, u_limit = 0, tau = 0, u_tau = 0, fit_residual = 0;
