@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/terms/surface_conduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/particles/block_sum.hpp"
+#include "solver/terms/interface.hpp"
+
+namespace meltproof::solver {
+namespace {
+
+/// Distances and F from a particle to a lane of its neighbours.
+struct Pair {
+  Lane dx, dy, dz, square, factor;
+};
+
+template <class Body>
+void for_each_pair(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+                   const QuinticSpline& kernel, std::size_t i, const Body& body) {
+  const HeatRecord* all = records.data();
+  const HeatRecord& own = all[i];
+  const Lane x = own.x, y = own.y, z = own.z;
+  for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
+    const std::uint32_t* j = &neighbours.index[k];
+    Pair pair;
+    pair.dx = x - gather(all, j, &HeatRecord::x);
+    pair.dy = y - gather(all, j, &HeatRecord::y);
+    pair.dz = z - gather(all, j, &HeatRecord::z);
+    pair.square = pair.dx * pair.dx + pair.dy * pair.dy + pair.dz * pair.dz;
+    pair.factor = kernel.gradient_factor(pair.square);
+    body(j, pair);
+  }
+}
+
+Lane share_of(const SurfaceRecord& own, const SurfaceRecord* all, const std::uint32_t* j,
+              const Pair& pair) {
+  return surface_share(pair.dx, pair.dy, pair.dz, Lane(1.0) / (pair.square + 1e-300),
+                       Lane(own.gain), Lane(own.nx), Lane(own.ny), Lane(own.nz),
+                       gather(all, j, &SurfaceRecord::gain), gather(all, j, &SurfaceRecord::nx),
+                       gather(all, j, &SurfaceRecord::ny), gather(all, j, &SurfaceRecord::nz));
+}
+
+}  // namespace
+
+void SurfaceConduction::update(const std::vector<HeatRecord>& records,
+                               const std::vector<Ghost>& ghosts, const NeighbourList& neighbours,
+                               const QuinticSpline& kernel) {
+  const std::size_t n = neighbours.last.size();
+  const HeatRecord* all = records.data();
+  surface_.assign(records.size(), {});
+  std::vector<std::uint8_t> outer(n, 0);
+  for_each_particle(n, [&](std::size_t i) {
+    Lane x = 0, y = 0, z = 0;
+    for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
+      const Lane weight = gather(all, j, &HeatRecord::volume) * pair.factor;
+      x += weight * pair.dx;
+      y += weight * pair.dy;
+      z += weight * pair.dz;
+    });
+    const double gx = sum_lanes(x), gy = sum_lanes(y), gz = sum_lanes(z);
+    const double size = std::sqrt(gx * gx + gy * gy + gz * gz);
+    if (size * kernel.smoothing_length > interface_threshold) {
+      outer[i] = 1;
+      surface_[i] = {0, -gx / size, -gy / size, -gz / size};
+    }
+  });
+  members_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (outer[i] != 0) {
+      members_.push_back(i);
+    }
+  }
+  const auto refresh_images = [&] {
+    for (std::size_t g = 0; g < ghosts.size(); ++g) {
+      const SurfaceRecord& source = surface_[ghosts[g].source];
+      const Vector normal = ghosts[g].mirrored({source.nx, source.ny, source.nz});
+      surface_[n + g] = {source.gain, normal[0], normal[1], normal[2]};
+    }
+  };
+  std::vector<double> gain(members_.size());
+  for (int sweep = 0; sweep < 6; ++sweep) {
+    refresh_images();
+    for_each_particle(members_.size(), [&](std::size_t m) {
+      const std::uint32_t i = members_[m];
+      const SurfaceRecord own = surface_[i];
+      const SurfaceRecord along{1, own.nx, own.ny, own.nz};
+      Lane moment = 0, stiffness = 0;
+      for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
+        const Lane across = pair.dx * along.nx + pair.dy * along.ny + pair.dz * along.nz;
+        const Lane tangential = pair.square - across * across;
+        const Lane weight = -0.5 * gather(all, j, &HeatRecord::volume) * pair.factor * tangential;
+        moment += weight * (1.0 + share_of(own, surface_.data(), j, pair));
+        // As if all neighbours' gains rose with this one: half of that would overshoot.
+        stiffness += weight * tangential / (pair.square + 1e-300);
+      });
+      const double still = sum_lanes(stiffness);
+      gain[m] = still > 0 ? std::clamp(own.gain + (1 - sum_lanes(moment)) / still, smallest_gain,
+                                       largest_gain)
+                          : 0;
+    });
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      surface_[members_[m]].gain = gain[m];
+    }
+  }
+  refresh_images();
+  // Receivers: whoever has a particle with a gain among its neighbours.
+  std::vector<std::uint8_t> takes_part(n, 0);
+  for_each_particle(n, [&](std::size_t i) {
+    takes_part[i] = surface_[i].gain != 0 ? 1 : 0;
+    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i] && takes_part[i] == 0; ++k) {
+      takes_part[i] = surface_[neighbours.index[k]].gain != 0 ? 1 : 0;
+    }
+  });
+  members_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (takes_part[i] != 0) {
+      members_.push_back(i);
+    }
+  }
+}
+
+void SurfaceConduction::add(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+                            const QuinticSpline& kernel, std::vector<double>& power) const {
+  const HeatRecord* all = records.data();
+  for_each_particle(members_.size(), [&](std::size_t m) {
+    const std::uint32_t i = members_[m];
+    const SurfaceRecord& own = surface_[i];
+    const Lane conductivity = all[i].conductivity, temperature = all[i].temperature;
+    Lane sum = 0;
+    for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
+      sum += share_of(own, surface_.data(), j, pair) *
+             conduction_pair(conductivity, temperature, gather(all, j, &HeatRecord::conductivity),
+                             gather(all, j, &HeatRecord::temperature),
+                             gather(all, j, &HeatRecord::volume), pair.factor);
+    });
+    power[i] += sum_lanes(sum);
+  });
+}
+
+}  // namespace meltproof::solver
