@@ -61,6 +61,9 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
   neighbours_.build(particles_, ghosts_, mobile_);
   place_records();
+  if (model_.surface_conduction) {
+    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
+  }
   for_each_particle(n, [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (model_.laser || model_.surface_loss) {
@@ -384,6 +387,9 @@ double Engine::step(double until) {
   watch.lap(times_.surface);
   if (model_.conduction) {
     conduct(heat_records_, neighbours_.list(), kernel_, conducted_);
+    if (model_.surface_conduction) {
+      surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, conducted_);
+    }
   }
   watch.lap(times_.heat);
   if (model_.species) {

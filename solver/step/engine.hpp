@@ -15,6 +15,7 @@
 #include "solver/terms/conduction.hpp"
 #include "solver/terms/laser.hpp"
 #include "solver/terms/species.hpp"
+#include "solver/terms/surface_conduction.hpp"
 #include "solver/terms/surface_loss.hpp"
 
 namespace meltproof::solver {
@@ -36,6 +37,7 @@ struct Model {
   std::optional<Laser> laser;
   std::optional<SurfaceLossSettings> surface_loss;
   LatticeMoments heat_moments = LatticeMoments::second;
+  bool surface_conduction = false;  ///< full conduction along free surfaces
   LatticeMoments species_moments = LatticeMoments::fourth;
   double step_factor = 1;            ///< of the smallest limit; for studies of the order in time
   std::optional<FlowSettings> flow;  ///< none: particles stay where they are
@@ -122,6 +124,7 @@ class Engine {
   std::vector<Ghost> ghosts_;
   MovingNeighbours neighbours_;
   SurfaceColumns surface_;
+  SurfaceConduction surface_conduction_;
   std::vector<HeatRecord> heat_records_;
   std::vector<SpeciesRecord> species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,

@@ -164,6 +164,9 @@ void Engine::rebuild_lists(bool everything) {
   flow_->arrange(particles_, ghosts_, neighbours_.list());
   built_at_ = particles_.position;
   place_records();
+  if (model_.surface_conduction) {
+    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
+  }
   refresh_ghosts();
 }
 

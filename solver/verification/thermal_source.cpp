@@ -57,6 +57,7 @@ VerificationRun run_moving_source(const VerificationCase& c, double spacing) {
   Model model;
   model.domain = plate.domain;
   model.species = false;
+  model.surface_conduction = c.variant != "plain";
   // The columns reach to y = 0 only: the other half of the beam falls on the half that is not
   // computed.
   model.laser = Laser{.power = c.power,
