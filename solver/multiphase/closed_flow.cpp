@@ -135,6 +135,7 @@ void ClosedFlow::build_lists() {
   records_.assign(n + ghosts_.size() + 1, FlowRecord());
   // The void takes part in nothing, but pairs divide by its density.
   records_.back().density = 1;
+  heat_.assign(model_.heat ? n + ghosts_.size() + 1 : 0, ConductionRecord());
   surface_.assign(model_.interface ? n + ghosts_.size() + 1 : 0, InterfaceRecord());
 }
 

@@ -22,6 +22,11 @@ struct Fluid {
   double specific_heat = 1;  ///< J kg-1 K-1
 };
 
+/// What conduction needs of a particle beside its FlowRecord.
+struct ConductionRecord {
+  double temperature = 0, conductivity = 1;  ///< K, W m-1 K-1
+};
+
 /// What a flow is made of besides its particles.
 struct ClosedFlowModel {
   Domain domain;     ///< faces: periodic, mirror (slip), open (walls of particles stand there)
@@ -117,6 +122,7 @@ class ClosedFlow {
   std::vector<Vector> built_at_;
   std::vector<FlowRecord> records_;
   std::vector<InterfaceRecord> surface_;
+  std::vector<ConductionRecord> heat_;
   std::vector<Vector> acceleration_, background_, surface_force_, normal_, transport_;
   std::vector<double> pressure_, curvature_, heating_;
   double time_ = 0;

@@ -44,25 +44,32 @@ T colour_pair(const T& volume_i, const T& density_i, const T& side_i, const T& v
 }
 
 /// What the curvature is made of.
-template <class T>
+template <int D, class T>
 struct CurvatureSums {
-  T divergence = 0;  ///< sum V_j (n_j - n_i) . grad W, 1/m
-  T moment = 0;      ///< -sum V_j r_ij . grad W, 1
+  std::array<Components<D, T>, D> change{};  ///< G = sum V_j (s_ij n_j - n_i) (x) grad_i W, 1/m
+  std::array<Components<D, T>, D> moment{};  ///< M = -sum V_j r_ij (x) grad_i W, symmetric
 };
 
-/// **Curvature by the reproducing divergence**: kappa_i = d sum_j V_j (s_ij n_j - n_i) . grad_i W /
-/// (-sum_j V_j r_ij . grad_i W) over the j near the interface, s_ij = -1 across it, because normals
-/// point out of either side. Exact for a normal that is linear in space however few neighbours have
-/// one. (Adami, Hu & Adams 2010)
+/// **Curvature**: kappa_i = tr(G M^-1), the divergence of the normals, over the j near the
+/// interface; s_ij = -1 across it, because normals point out of either side. Exact for normals that
+/// are linear in space, wherever their neighbours stand. Adami, Hu & Adams (2010) divide by the
+/// trace of M instead, which is right while the support is full and 8 to 10 % too high at the rim
+/// of the band in which normals are known.
 template <int D, class T>
-void curvature_pair(CurvatureSums<T>& sums, const PairGeometry<D, T>& pair,
+void curvature_pair(CurvatureSums<D, T>& sums, const PairGeometry<D, T>& pair,
                     const Components<D, T>& normal_i, const T& side_i,
                     const Components<D, T>& normal_j, const T& side_j, const T& near_j,
                     const T& volume_j, const T& gradient) {
   const T weight = near_j * volume_j * gradient;
   const T sign = 1.0 - 2.0 * across(side_i, side_j);
-  sums.divergence += weight * (sign * dot<D>(normal_j, pair.r) - dot<D>(normal_i, pair.r));
-  sums.moment -= weight * pair.squared;
+  for (std::size_t a = 0; a < D; ++a) {
+    for (std::size_t b = 0; b < D; ++b) {
+      sums.change[a][b] += weight * (sign * normal_j[a] - normal_i[a]) * pair.r[b];
+    }
+    for (std::size_t b = a; b < D; ++b) {
+      sums.moment[a][b] -= weight * pair.r[a] * pair.r[b];
+    }
+  }
 }
 
 /// What a corrected gradient is made of: grad f = M^-1 g.

@@ -22,6 +22,35 @@ void for_each_group(const NeighbourList& list, std::size_t i, const Record* all,
   }
 }
 
+template <int D>
+using Matrix = Eigen::Matrix<double, D, D>;
+
+template <int D>
+Matrix<D> full(const std::array<Components<D, Lane>, D>& sums) {
+  Matrix<D> result;
+  for (std::size_t a = 0; a < D; ++a) {
+    for (std::size_t b = 0; b < D; ++b) {
+      result(static_cast<int>(a), static_cast<int>(b)) = sum_lanes(sums[a][b]);
+    }
+  }
+  return result;
+}
+
+/// The same from its upper half.
+template <int D>
+Matrix<D> symmetric(const std::array<Components<D, Lane>, D>& sums) {
+  const Matrix<D> upper = full<D>(sums);
+  return Matrix<D>(upper.template selfadjointView<Eigen::Upper>());
+}
+
+/// The inverse of a second moment; zero where neighbours do not span space.
+template <int D>
+Matrix<D> inverse(const Matrix<D>& moment) {
+  // On the undisturbed lattice the moment is the unit matrix.
+  constexpr double flat = 1e-3;
+  return moment.determinant() > flat ? Matrix<D>(moment.inverse()) : Matrix<D>(Matrix<D>::Zero());
+}
+
 /// Below this length times h a colour gradient is too weak to give a direction. (Morris 2000)
 constexpr double weakest_normal = 0.01;
 
@@ -107,6 +136,10 @@ void ClosedFlow::extrapolate_to_walls() {
     record.pressure = wall_pressure(total, g[0] - a[0], g[1] - a[1], g[2] - a[2]);
     // A wall shows each fluid what that fluid has itself: mean density and viscosity of those near.
     record.density = total.weight > 0 ? sum_lanes(density_sum) / total.weight : 1;
+    // And is as compressed as the fluid at its pressure, or layers near a wall could not be at
+    // rest.
+    const double compression = 1 + (record.pressure - model_.added_pressure) / model_.stiffness;
+    record.volume = particles_.volume[i] / std::max(0.5, compression);
     record.viscosity = total.weight > 0 ? sum_lanes(viscosity_sum) / total.weight : 0;
     record.vx = wall_velocity(v[0], total.velocity_x, total.weight);
     record.vy = wall_velocity(v[1], total.velocity_y, total.weight);
@@ -205,7 +238,7 @@ void ClosedFlow::sum_interface() {
     }
     const auto normal_i = spread<D>(own, InterfaceRecord::normal());
     const Lane side = own.side, tension = own.tension;
-    CurvatureSums<Lane> sums;
+    CurvatureSums<D, Lane> sums;
     GradientSums<D, Lane> slope;
     for_each_group<D>(
         neighbours_, i, all, [&](const PairGeometry<D, Lane>& pair, const std::uint32_t* j) {
@@ -218,19 +251,16 @@ void ClosedFlow::sum_interface() {
           gradient_pair<D, Lane>(slope, pair, gather(all, j, &InterfaceRecord::tension) - tension,
                                  volume, gradient);
         });
-    curvature_[i] = D * sum_lanes(sums.divergence) / sum_lanes(sums.moment);
-    Eigen::Matrix<double, D, D> moment;
+    const Matrix<D> change = full<D>(sums.change);
+    curvature_[i] = change.cwiseProduct(inverse<D>(symmetric<D>(sums.moment))).sum();
     Eigen::Matrix<double, D, 1> gradient, normal;
-    for (std::size_t a = 0; a < D; ++a) {
-      gradient(static_cast<int>(a)) = sum_lanes(slope.gradient[a]);
-      normal(static_cast<int>(a)) = normal_[i][a];
-      for (std::size_t b = a; b < D; ++b) {
-        const double value = sum_lanes(slope.moment[a][b]);
-        moment(static_cast<int>(a), static_cast<int>(b)) = value;
-        moment(static_cast<int>(b), static_cast<int>(a)) = value;
-      }
+    for (int a = 0; a < D; ++a) {
+      const auto d = static_cast<std::size_t>(a);
+      gradient(a) = sum_lanes(slope.gradient[d]);
+      normal(a) = normal_[i][d];
     }
-    const Eigen::Matrix<double, D, 1> tension_slope = moment.inverse() * gradient;
+    const Eigen::Matrix<double, D, 1> tension_slope =
+        inverse<D>(symmetric<D>(slope.moment)) * gradient;
     const Eigen::Matrix<double, D, 1> tangential =
         tension_slope - normal * normal.dot(tension_slope);
     const double delta = std::sqrt(dot<3>(surface_force_[i], surface_force_[i]));
@@ -246,23 +276,33 @@ void ClosedFlow::sum_interface() {
 template <int D>
 void ClosedFlow::conduct_heat() {
   const std::size_t n = particles_.size();
-  std::vector<HeatRecord> heat(records_.size());
   const auto fluid_of = [&](std::size_t i) -> const Fluid& {
     return model_.fluids[static_cast<std::size_t>(std::max(0, fields_.fluid[i]))];
   };
-  const auto fill = [&](std::size_t k, std::size_t source, double temperature) {
-    heat[k] = {records_[k].x,      records_[k].y, records_[k].z,
-               records_[k].volume, temperature,   fluid_of(source).conductivity};
-  };
-  for_each_particle(n, [&](std::size_t i) { fill(i, i, particles_.temperature[i]); });
+  for_each_particle(n, [&](std::size_t i) {
+    heat_[i].temperature = particles_.temperature[i];
+    heat_[i].conductivity = fluid_of(i).conductivity;
+  });
   for_each_particle(ghosts_.size(), [&](std::size_t g) {
     const Ghost& ghost = ghosts_[g];
-    fill(n + g, ghost.source, ghost.sign * particles_.temperature[ghost.source] + ghost.offset);
+    heat_[n + g] = heat_[ghost.source];
+    heat_[n + g].temperature = ghost.sign * heat_[ghost.source].temperature + ghost.offset;
   });
-  std::vector<double> power(n);
-  conduct(heat, neighbours_, kernel_, power);
+  const FlowRecord* all = records_.data();
+  const ConductionRecord* heat = heat_.data();
   for_each_particle(n, [&](std::size_t i) {
-    heating_[i] = is_fluid(i) ? power[i] / (particles_.density[i] * fluid_of(i).specific_heat) : 0;
+    const Lane conductivity = heat[i].conductivity, temperature = heat[i].temperature;
+    Lane sum = 0;
+    if (is_fluid(i)) {
+      for_each_group<D>(
+          neighbours_, i, all, [&](const PairGeometry<D, Lane>& pair, const std::uint32_t* j) {
+            sum += conduction_pair<Lane>(
+                conductivity, temperature, gather(heat, j, &ConductionRecord::conductivity),
+                gather(heat, j, &ConductionRecord::temperature),
+                gather(all, j, &FlowRecord::volume), kernel_.gradient_factor(pair.squared));
+          });
+    }
+    heating_[i] = sum_lanes(sum) / (records_[i].density * fluid_of(i).specific_heat);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "solver/verification/flow_problems.hpp"
 #include "solver/verification/laser_budget.hpp"
 #include "solver/verification/problems.hpp"
 #include "solver/verification/thermal_phase.hpp"

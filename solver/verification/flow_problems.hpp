@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The flow cases, all run by ClosedFlow. Every case keeps p0 = rho c^2 as the background pressure
+// of the transport velocity and h = spacing.
+#pragma once
+
+#include "solver/verification/case.hpp"
+
+namespace meltproof::solver {
+
+/// Steady flow between plates a `height` apart, periodic over `width`, started from rest and run
+/// until `time`. `variant` "couette": the upper plate moves with `speed`; "poiseuille": a body
+/// force, one fluid; "two_fluids": the lower half is `viscosity_ratio` times as viscous as the
+/// upper. The force is such that one fluid of the upper one's viscosity would reach `speed`, at the
+/// Reynolds number `reynolds` = speed height/nu. Error: L2 norm of u - u_exact over that of
+/// u_exact, all particles.
+VerificationRun run_channel(const VerificationCase& c, double spacing);
+
+/// A column of two fluids, the lower half `density_ratio` times as heavy, between solid floor and
+/// ceiling, `height` tall, for `steps` steps. It starts compressed by its own weight. Error: L2
+/// norm of p - p_exact over that of p_exact, both of zero mean (a closed box leaves a constant
+/// open). Broken if anything moves faster than 1 % of sqrt(g height) at the end.
+VerificationRun run_hydrostatic(const VerificationCase& c, double spacing);
+
+/// Taylor-Green vortices in a periodic unit box, from a relaxed arrangement. Error: largest speed
+/// at `time` against exp(b t), as in Adami et al. 2013; `extra` gives the amplitude of the exact
+/// mode and the root mean square as well.
+VerificationRun run_taylor_green(const VerificationCase& c, double spacing);
+
+/// A square cavity of side 1 whose lid moves with 1, until `time`; the flow of twice the spacing at
+/// `time` is where it starts from, and that one from four times the spacing. Error: largest
+/// deviation from the table on both middle lines, over the lid's speed, read as the mean of the
+/// last fifth of the time.
+VerificationRun run_cavity(const VerificationCase& c, double spacing);
+
+/// A round drop of `radius` at rest in a lighter fluid, in `dimensions`. Error: pressure difference
+/// against (d-1) sigma/R, R from the drop's volume.
+VerificationRun run_laplace_drop(const VerificationCase& c, double spacing);
+
+/// A drop driven by the temperature dependence of its surface tension. Error: its speed at the end
+/// against migration_speed().
+VerificationRun run_drop_migration(const VerificationCase& c, double spacing);
+
+}  // namespace meltproof::solver
