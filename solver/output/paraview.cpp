@@ -182,7 +182,7 @@ std::string xdmf(const std::filesystem::path& path) {
                           static_cast<std::int64_t>(count) - 1;
     out += fmt::format(
         "      <Grid Name=\"metal\" GridType=\"Uniform\">\n"
-        "        <Time Value=\"{:.9g}\"/>\n"
+        "        <Time Value=\"{}\"/>\n"
         "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" "
         "NodesPerElement=\"1\">{}</Topology>\n"
         "        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
@@ -218,7 +218,7 @@ std::vector<std::filesystem::path> write_vtu(const std::filesystem::path& path,
   for (const auto& group : snapshots_of(run)) {
     const std::string name = group.substr(group.find('/') + 1) + ".vtu";
     write_file(folder / name, vtu(run, group));
-    list += fmt::format("    <DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n",
+    list += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n",
                         run.scalar(group + "/time"), name);
     written.push_back(folder / name);
   }

@@ -17,11 +17,14 @@ namespace {
 
 constexpr double most_places = 2e8;
 constexpr double reach_spacings = 2, nearest_spacings = 0.9;
-constexpr std::size_t values = 4;  // melt_time, freeze_time, cooling_rate, gradient
+// Freezing time, time spent molten (not the melting time: so the one never comes before the other),
+// cooling rate, gradient.
+constexpr std::size_t values = 4;
 using Values = Eigen::Matrix<double, 1, values>;
 
 Values values_of(const Particles& p, std::uint32_t i) {
-  return Values(p.melt_time[i], p.freeze_time[i], p.cooling_rate[i], p.freeze_gradient[i]);
+  return Values(p.freeze_time[i], p.freeze_time[i] - p.melt_time[i], p.cooling_rate[i],
+                p.freeze_gradient[i]);
 }
 
 /// The weighted linear fit, or the weighted mean where a fit is not possible.
@@ -157,8 +160,8 @@ std::vector<FrozenPoint> interpolate(const FrozenTrack& track, double cell) {
       });
       if (frozen) {
         const Values v = fit(grid, p, point.at);
-        point.melt_time = v[0];
-        point.freeze_time = std::max(v[0], v[1]);
+        point.freeze_time = v[0];
+        point.melt_time = std::max(0.0, v[0] - v[1]);
         point.cooling_rate = v[2];
         point.gradient = v[3];
         row[r].push_back(point);
