@@ -254,6 +254,8 @@ Model make_model(const TrackCase& t, const Domain& domain) {
       .vapour_heat = t.vapour_heat == "latent" ? VapourHeat::latent
                                                : VapourHeat::latent_and_sensible};
   model.flow = flow_settings(t.flow, t.form == "as_printed" ? 20 : 1);
+  // Heat that has warmed nothing by a thousandth of a kelvin is not felt.
+  model.sleep_below = 1e-3;
   model.freezing_fraction = t.flow.freezing_fraction;
   return model;
 }

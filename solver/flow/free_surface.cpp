@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -19,8 +20,17 @@ FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpli
       dimensions_(dimensions) {}
 
 void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              const NeighbourList& list) {
+                              const NeighbourList& list, bool everything) {
   const std::size_t n = particles.size(), all = list.void_index + std::size_t{1};
+  // Whoever had a role before may have lost it; the records of all others still hold.
+  std::vector<std::uint32_t> changed;
+  if (everything || role_.size() != n) {
+    changed.resize(n);
+    std::iota(changed.begin(), changed.end(), 0U);
+  } else {
+    changed = liquid_;
+    changed.insert(changed.end(), wall_.begin(), wall_.end());
+  }
   role_.assign(n, 0);
   liquid_.clear();
   wall_.clear();
@@ -44,6 +54,24 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     }
   }
   std::sort(wall_.begin(), wall_.end());
+  // A wall listens to the melt only, which is a small part of its list.
+  melt_near_wall_.first.clear();
+  melt_near_wall_.last.clear();
+  melt_near_wall_.index.clear();
+  for (const std::uint32_t i : wall_) {
+    const std::size_t begin = melt_near_wall_.index.size();
+    melt_near_wall_.first.push_back(begin);
+    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+      const std::uint32_t j = list.index[k];
+      if (j != list.void_index && role_[j < n ? j : ghosts[j - n].source] == 1) {
+        melt_near_wall_.index.push_back(j);
+      }
+    }
+    while ((melt_near_wall_.index.size() - begin) % lane_count != 0) {
+      melt_near_wall_.index.push_back(list.void_index);
+    }
+    melt_near_wall_.last.push_back(melt_near_wall_.index.size());
+  }
   near_ghosts_.clear();
   for (std::uint32_t g = 0; g < ghosts.size(); ++g) {
     if (role_[ghosts[g].source] != 0) {
@@ -59,10 +87,14 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
   limited_.assign(n, 0);
   // Solids stand still, so their records are written here and not again. Behind everybody stands
   // the void.
+  for (const std::uint32_t i : wall_) {
+    changed.push_back(i);
+  }
   motion_.resize(all);
   surface_.resize(all);
   force_.resize(all);
-  for_each_particle(n, [&](std::size_t i) {
+  // One thread: an index may stand in the list twice.
+  for (const std::uint32_t i : changed) {
     const Vector& at = particles.position[i];
     // What was lost takes part in nothing.
     const bool here = particles.phase[i] != Phase::lost;
@@ -77,7 +109,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     if (role_[i] == 2) {
       force_[i] = ForceRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0, 0, 0};
     }
-  });
+  }
   for (std::size_t g = 0; g < ghosts.size(); ++g) {
     const std::uint32_t source = ghosts[g].source;
     const Vector at = ghosts[g].image_of(particles.position[source]);
@@ -320,15 +352,16 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
   });
 }
 
-void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts, const NeighbourList& list) {
+void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
   const ForceRecord* all = force_.data();
   const std::size_t n = role_.size();
   for_each_particle(wall_.size(), [&](std::size_t member) {
     const std::uint32_t i = wall_[member];
     const ForceRecord& own = all[i];
     WallSums<Lane> sums;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = melt_near_wall_.first[member]; k < melt_near_wall_.last[member];
+         k += lane_count) {
+      const std::uint32_t* j = &melt_near_wall_.index[k];
       const Lane density = gather(all, j, &ForceRecord::density);
       const Lane dx = own.x - gather(all, j, &ForceRecord::x);
       const Lane dy = own.y - gather(all, j, &ForceRecord::y);
@@ -482,7 +515,7 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
       force_[n + g].vz = v[2];
     }
   }
-  walls(ghosts, list);
+  walls(ghosts);
   forces(particles, list, properties);
 }
 

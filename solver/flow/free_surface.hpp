@@ -62,8 +62,9 @@ class FreeSurfaceFlow {
                   int dimensions);
 
   /// To be called when phases, indices or lists have changed: finds liquid and wall particles.
+  /// @param everything indices or positions of solids have changed too, so all records are written.
   void arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-               const NeighbourList& list);
+               const NeighbourList& list, bool everything);
   /// To be called when the properties have changed: gradients of the surface tension.
   void set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
                       const NeighbourList& list, const MeltProperties& properties);
@@ -121,7 +122,7 @@ class FreeSurfaceFlow {
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
                      const MeltProperties& properties);
   void curvatures(const NeighbourList& list);
-  void walls(const std::vector<Ghost>& ghosts, const NeighbourList& list);
+  void walls(const std::vector<Ghost>& ghosts);
   void forces(const Particles& particles, const NeighbourList& list,
               const MeltProperties& properties);
 
@@ -132,6 +133,7 @@ class FreeSurfaceFlow {
   std::vector<std::uint32_t> liquid_, wall_;
   std::vector<std::uint32_t> near_ghosts_;  // ghosts of liquid and wall particles
   std::vector<std::uint8_t> role_;          // 0 neither, 1 liquid, 2 wall
+  NeighbourList melt_near_wall_;            // of wall_[k], k in place of the particle: liquid only
   std::vector<MotionRecord> motion_;
   std::vector<SurfaceRecord> surface_;
   std::vector<ForceRecord> force_;

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/particles/ghosts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace meltproof::solver {
 
 std::vector<Ghost> make_ghosts(const Particles& particles, const Domain& domain, double reach) {
+  const bool open = std::all_of(domain.face.begin(), domain.face.end(), [](const auto& axis) {
+    return axis[0] == Face::open && axis[1] == Face::open;
+  });
+  if (open) {
+    return {};
+  }
   // The particles themselves stand first and are cut off at the end.
   std::vector<Ghost> all;
   all.reserve(particles.size() * 2);

@@ -64,6 +64,11 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   if (model_.surface_conduction) {
     surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
   }
+  // Without sleep no temperature is the start's, and everybody is awake.
+  start_temperature_ =
+      model_.sleep_below > 0 && n > 0
+          ? mixture_.temperature(particles_.enthalpy[0], particles_.concentration[0])
+          : -1e9;
   for_each_particle(n, [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (model_.laser || model_.surface_loss) {
@@ -103,6 +108,7 @@ void Engine::place_records() {
     place(n + g, source, ghosts_[g].image_of(particles_.position[source]));
   }
   heat_records_.back() = {};
+  heat_records_.back().awake = 0;
   species_records_.back() = {};
 }
 
@@ -136,6 +142,7 @@ void Engine::refresh(std::size_t i) {
   absorptivity_[i] = mixture_.absorptivity(concentration);
   heat_records_[i].temperature = temperature;
   heat_records_[i].conductivity = conductivity;
+  heat_records_[i].awake = std::abs(temperature - start_temperature_) > model_.sleep_below ? 1 : 0;
 }
 
 void Engine::refresh_ghosts() {
@@ -145,6 +152,7 @@ void Engine::refresh_ghosts() {
     heat_records_[n + g].temperature =
         ghost.sign * particles_.temperature[ghost.source] + ghost.offset;
     heat_records_[n + g].conductivity = heat_records_[ghost.source].conductivity;
+    heat_records_[n + g].awake = heat_records_[ghost.source].awake;
   });
 }
 
@@ -386,7 +394,8 @@ double Engine::step(double until) {
   }
   watch.lap(times_.surface);
   if (model_.conduction) {
-    conduct(heat_records_, neighbours_.list(), kernel_, conducted_);
+    find_awake(heat_records_, neighbours_.list(), heat_active_);
+    conduct(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
     if (model_.surface_conduction) {
       surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, conducted_);
     }

@@ -40,6 +40,9 @@ struct Model {
   bool surface_conduction = false;  ///< full conduction along free surfaces
   LatticeMoments species_moments = LatticeMoments::fourth;
   double step_factor = 1;            ///< of the smallest limit; for studies of the order in time
+  /// Particles that have not been warmed by more than this since the start exchange no heat among
+  /// themselves, K; zero: everybody does. For a domain that begins at one temperature.
+  double sleep_below = 0;
   std::optional<FlowSettings> flow;  ///< none: particles stay where they are
   /// With flow: acoustic steps in a thermal one, at most.
   int flow_steps = 10;
@@ -129,7 +132,8 @@ class Engine {
   std::vector<SpeciesRecord> species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
       half_step_, loss_area_;
-  std::vector<std::uint32_t> liquid_;
+  std::vector<std::uint32_t> liquid_, heat_active_;
+  double start_temperature_ = 0;  // K, of a domain that begins at one temperature
   StepLimits limits_;
   LaserBudget beam_;
   SurfaceLossBudget loss_;

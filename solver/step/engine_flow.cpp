@@ -161,7 +161,7 @@ void Engine::rebuild_lists(bool everything) {
   }
   ++list_builds_;
   ++builds_since_sort_;
-  flow_->arrange(particles_, ghosts_, neighbours_.list());
+  flow_->arrange(particles_, ghosts_, neighbours_.list(), everything || !ghosts_.empty());
   built_at_ = particles_.position;
   place_records();
   if (model_.surface_conduction) {
@@ -184,7 +184,7 @@ void Engine::advance_flow(double dt, int steps) {
       listed = listed && (particles_.phase[i] != Phase::liquid || mobile_[i] != 0);
     }
     if (listed) {
-      flow_->arrange(particles_, ghosts_, neighbours_.list());
+      flow_->arrange(particles_, ghosts_, neighbours_.list(), !ghosts_.empty());
     } else {
       rebuild_lists(false);
     }

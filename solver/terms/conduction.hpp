@@ -25,10 +25,20 @@ struct alignas(64) HeatRecord {
   double volume = 0;                                               ///< m^d
   double temperature = 0;                                          ///< K
   double conductivity = 1;                                         ///< W m-1 K-1
+  double awake = 1;  ///< 0: as cold as it began; two such exchange nothing
 };
 
-/// Conducted power per volume of every particle, W m-3.
+/// The particles that exchange heat: those awake and the neighbours of those, in increasing order.
+/// A pair counts if either is awake, so what one gets the other gives, and energy stays exact.
+void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+                std::vector<std::uint32_t>& active);
+
+/// Conducted power per volume, W m-3, of the particles in `active`; zero for the others.
 /// @param records particles, then ghosts, then the void; @param power size n, overwritten.
+void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+             const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
+             std::vector<double>& power);
+/// The same for every particle.
 void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
              const QuinticSpline& kernel, std::vector<double>& power);
 
