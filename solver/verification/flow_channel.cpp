@@ -124,6 +124,7 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing) {
     }
   }
   ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
+  run_until(flow, c.time);
   double fastest = 0;
   for (long long k = 0; k < c.steps; ++k) {
     flow.advance(flow.stable_step());
@@ -152,7 +153,7 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing) {
   run.steps = flow.steps();
   const double last = largest_speed(flow) / speed;
   run.extra["speed_at_the_end_over_sqrt_gH"] = last;
-  run.extra["largest_speed_over_sqrt_gH"] = fastest / speed;
+  run.extra["largest_speed_while_at_rest_over_sqrt_gH"] = fastest / speed;
   run.extra["duration_over_sqrt_H_over_g"] = flow.time() * speed / c.height;
   if (!(last < 0.01)) {
     run.broken.push_back(fmt::format(

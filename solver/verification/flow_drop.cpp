@@ -174,7 +174,7 @@ VerificationRun run_drop_migration(const VerificationCase& c, double spacing) {
     run.exact.push_back(exact);
   }
   double mean = 0;
-  constexpr int last = rows / 4;
+  constexpr int last = rows / 2;
   for (int row = rows - last; row < rows; ++row) {
     mean += run.value[static_cast<std::size_t>(row)] / last;
   }

@@ -16,9 +16,10 @@ namespace meltproof::solver {
 VerificationRun run_channel(const VerificationCase& c, double spacing);
 
 /// A column of two fluids, the lower half `density_ratio` times as heavy, between solid floor and
-/// ceiling, `height` tall, for `steps` steps. It starts compressed by its own weight. Error: L2
-/// norm of p - p_exact over that of p_exact, both of zero mean (a closed box leaves a constant
-/// open). Broken if anything moves faster than 1 % of sqrt(g height) at the end.
+/// ceiling, `height` tall, starts compressed by its own weight, settles until `time`, and then has
+/// to stay at rest for `steps` steps. Error: L2 norm of p - p_exact over that of p_exact, both of
+/// zero mean (a closed box leaves a constant open). Broken if anything moves faster than 1 % of
+/// sqrt(g height) at the end.
 VerificationRun run_hydrostatic(const VerificationCase& c, double spacing);
 
 /// Taylor-Green vortices in a periodic unit box, from a relaxed arrangement. Error: largest speed
@@ -36,8 +37,9 @@ VerificationRun run_cavity(const VerificationCase& c, double spacing);
 /// against (d-1) sigma/R, R from the drop's volume.
 VerificationRun run_laplace_drop(const VerificationCase& c, double spacing);
 
-/// A drop driven by the temperature dependence of its surface tension. Error: its speed at the end
-/// against migration_speed().
+/// A drop driven by the temperature dependence of its surface tension, in a fluid of equal
+/// properties with slip walls all around. Error: the speed of its centre, mean over the second half
+/// of `time`, against migration_speed().
 VerificationRun run_drop_migration(const VerificationCase& c, double spacing);
 
 }  // namespace meltproof::solver
