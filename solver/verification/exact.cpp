@@ -24,6 +24,15 @@ double StripeSolution::operator()(double z, double spread) const {
   return sum / 2;
 }
 
+double periodic_stripe(double z, double z1, double z2, double length, double spread) {
+  double sum = 0;
+  const int images = 1 + static_cast<int>(std::ceil(6 * spread / length));
+  for (int n = -images; n <= images; ++n) {
+    sum += std::erf((z - z1 - n * length) / spread) - std::erf((z - z2 - n * length) / spread);
+  }
+  return sum / 2;
+}
+
 double printed_stripe(double z, double z1, double z2, double spread) {
   return z <= (z1 + z2) / 2 ? std::erfc((z1 - z) / spread) / 2 : std::erfc((z - z2) / spread) / 2;
 }

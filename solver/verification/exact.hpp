@@ -13,6 +13,9 @@ struct StripeSolution {
   double operator()(double z, double spread) const;
 };
 
+/// The same stripe in a box that repeats itself every `length`.
+double periodic_stripe(double z, double z1, double z2, double length, double spread);
+
 /// The paper's Eqs. 9 and 10: two half-space solutions that meet at z0 = (z1 + z2)/2. They solve
 /// the stripe only while s is small against its width (paper errata 4).
 double printed_stripe(double z, double z1, double z2, double spread);

@@ -10,6 +10,7 @@
 #include "solver/verification/flow_problems.hpp"
 #include "solver/verification/laser_budget.hpp"
 #include "solver/verification/problems.hpp"
+#include "solver/verification/species_moving.hpp"
 #include "solver/verification/thermal_phase.hpp"
 #include "solver/verification/thermal_source.hpp"
 #include "solver/verification/thermal_surface.hpp"
@@ -18,13 +19,19 @@ namespace meltproof::solver {
 
 const std::vector<VerificationKind>& verification_kinds() {
   // One line per kind, in the order of the suite's table.
+  // clang-format off
   static const std::vector<VerificationKind> kinds = {
-      {"species_stripe", run_species_stripe},           {"conduction_slab", run_conduction_slab},
-      {"conduction_contact", run_conduction_contact},   {"stefan", run_stefan},
-      {"stefan_two_phase", run_stefan_two_phase},       {"moving_source", run_moving_source},
+      {"species_stripe", run_species_stripe},
+      {"species_moving", run_species_moving},
+      {"conduction_slab", run_conduction_slab},
+      {"conduction_contact", run_conduction_contact},
+      {"stefan", run_stefan},
+      {"stefan_two_phase", run_stefan_two_phase},
+      {"moving_source", run_moving_source},
       {"evaporative_cooling", run_evaporative_cooling},
       {"laser_budget", run_laser_budget},
   };
+  // clang-format on
   return kinds;
 }
 
