@@ -30,6 +30,12 @@ const std::vector<VerificationKind>& verification_kinds() {
       {"moving_source", run_moving_source},
       {"evaporative_cooling", run_evaporative_cooling},
       {"laser_budget", run_laser_budget},
+      {"channel", run_channel},
+      {"hydrostatic", run_hydrostatic},
+      {"taylor_green", run_taylor_green},
+      {"cavity", run_cavity},
+      {"laplace_drop", run_laplace_drop},
+      {"drop_migration", run_drop_migration},
   };
   // clang-format on
   return kinds;
