@@ -45,8 +45,8 @@ TEST(History, SteadinessIsJudgedWithinTheExposure) {
     HistoryLine line;
     line.time = 5e-6 * i;
     // Grows while the beam is on, is gone afterwards.
-    line.pool.length = line.time <= 1.04e-3 ? -300e-6 * std::expm1(-line.time / 0.4e-3) : 0;
-    line.pool.width = line.time <= 1.04e-3 ? 1e-4 : 0;
+    line.pool.length = i <= 208 ? -300e-6 * std::expm1(-line.time / 0.4e-3) : 0;
+    line.pool.width = i <= 208 ? 1e-4 : 0;
     lines.push_back(line);
   }
   const auto found = steadiness_json(lines, 0.35e-3, 1.04e-3);
