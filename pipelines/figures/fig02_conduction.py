@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Heat conduction in a slab and the one-phase Stefan problem, exact and by SPH."""
+"""Heat conduction in slabs, melting and freezing fronts, exact and by SPH."""
 
 import argparse
 
@@ -15,7 +15,8 @@ def main():
     given = arguments.parse_args()
 
     cases = verification.load_cases(given.verification, ["conduction", "stefan"])
-    figure, panels = plt.subplots((len(cases) + 3) // 3, 3, figsize=(style.PAGE_WIDTH, 4.6), squeeze=False)
+    rows = (len(cases) + 3) // 3
+    figure, panels = plt.subplots(rows, 3, figsize=(style.PAGE_WIDTH, 2.3 * rows), squeeze=False)
     panels = list(panels.flat)
     for axes, case in zip(panels, cases):
         verification.plot_profile(axes, case, given.verification)
@@ -24,7 +25,7 @@ def main():
         unused.remove()
 
     style.save(figure, given.output, "Heat conduction and melting against exact solutions",
-               "Temperature in slabs and in the one-phase Stefan problem: exact solution as a line, "
+               "Temperature in slabs and around melting and freezing fronts: exact solution as a line, "
                "SPH particles as markers, and the errors against the particle spacing. "
                + verification.caption_sentences(cases))
 
