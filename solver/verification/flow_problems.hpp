@@ -27,10 +27,10 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing);
 /// mode and the root mean square as well.
 VerificationRun run_taylor_green(const VerificationCase& c, double spacing);
 
-/// A square cavity of side 1 whose lid moves with 1, until `time`; the flow of twice the spacing at
-/// `time` is where it starts from, and that one from four times the spacing. Error: largest
-/// deviation from the table on both middle lines, over the lid's speed, read as the mean of the
-/// last fifth of the time.
+/// A square cavity of side 1 whose lid moves with 1. It spins up from rest at four times the
+/// spacing for eight times `time`, goes on at twice the spacing and then at the spacing itself for
+/// `time` each, from relaxed arrangements. Error: largest deviation from the table on both middle
+/// lines, over the lid's speed, read as the mean of the last fifth of the time.
 VerificationRun run_cavity(const VerificationCase& c, double spacing);
 
 /// A round drop of `radius` at rest in a lighter fluid, in `dimensions`. Error: pressure difference
