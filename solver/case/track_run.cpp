@@ -223,6 +223,13 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
       {"end_time_us", 1e6 * engine.time()},
       {"snapshots", snapshots}};
   result = window_json(lines, t, std::move(result));
+  if (engine.model().flow) {
+    const LimiterCounts& acted = engine.flow().limiters();
+    result["limiters"] = {{"wall_pressure_clipped", acted.wall_pressure},
+                          {"wall_particle_steps", acted.wall_steps},
+                          {"curvature_held", acted.curvature},
+                          {"liquid_particle_steps", acted.particle_steps}};
+  }
   const double track = t.speed * t.exposure;
   result["steady_state"] = steadiness_json(lines, start_up_length(track) / t.speed, t.exposure);
   result["steady"] = result["steady_state"]["pool_length"]["sentence"];
