@@ -74,7 +74,8 @@ ClosedFlow::ClosedFlow(Particles particles, std::vector<std::int32_t> fluid, Clo
     : particles_(std::move(particles)),
       model_(std::move(model)),
       kernel_(model_.smoothing_length > 0 ? model_.smoothing_length : particles_.spacing,
-              particles_.dimensions) {
+              particles_.dimensions),
+      depth_(kernel_, particles_.dimensions) {
   check(particles_, fluid, model_);
   // Friction and heat are exact for a parabola on the undisturbed lattice.
   set_lattice_moments(kernel_, particles_.spacing, particles_.dimensions, LatticeMoments::second);
@@ -97,6 +98,7 @@ ClosedFlow::ClosedFlow(Particles particles, std::vector<std::int32_t> fluid, Clo
   pressure_.assign(n, 0);
   curvature_.assign(n, 0);
   heating_.assign(n, 0);
+  interface_depth_.assign(n, 0);
   build_lists();
   evaluate();
 }

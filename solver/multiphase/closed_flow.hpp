@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/multiphase/depth.hpp"
 #include "solver/multiphase/interface.hpp"
 #include "solver/multiphase/momentum.hpp"
 #include "solver/particles/ghosts.hpp"
@@ -117,6 +118,7 @@ class ClosedFlow {
   FlowFields fields_;
   ClosedFlowModel model_;
   QuinticSpline kernel_;
+  InterfaceDepth depth_;
   std::vector<Ghost> ghosts_;
   NeighbourList neighbours_;
   std::vector<Vector> built_at_;
@@ -124,7 +126,7 @@ class ClosedFlow {
   std::vector<InterfaceRecord> surface_;
   std::vector<ConductionRecord> heat_;
   std::vector<Vector> acceleration_, background_, surface_force_, normal_, transport_;
-  std::vector<double> pressure_, curvature_, heating_;
+  std::vector<double> pressure_, curvature_, heating_, interface_depth_;
   double time_ = 0;
   std::size_t steps_ = 0, builds_ = 0;
 };

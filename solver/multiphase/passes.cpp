@@ -198,18 +198,22 @@ void ClosedFlow::sum_interface() {
     const InterfaceRecord& own = all[i];
     const Lane volume = own.volume, density = own.density, side = own.side;
     Components<D, Lane> sum{};
+    Lane share = 0;
     if (is_fluid(i)) {
       for_each_group<D>(
           neighbours_, i, all, [&](const PairGeometry<D, Lane>& pair, const std::uint32_t* j) {
-            const Lane factor =
-                colour_pair<Lane>(volume, density, side, gather(all, j, &InterfaceRecord::volume),
-                                  gather(all, j, &InterfaceRecord::density),
-                                  gather(all, j, &InterfaceRecord::side), pair.gradient(kernel_));
+            const Lane volume_j = gather(all, j, &InterfaceRecord::volume),
+                       side_j = gather(all, j, &InterfaceRecord::side);
+            const Lane factor = colour_pair<Lane>(volume, density, side, volume_j,
+                                                  gather(all, j, &InterfaceRecord::density), side_j,
+                                                  pair.gradient(kernel_));
+            share += across(side, side_j) * volume_j * kernel_.value(pair.distance);
             for (std::size_t d = 0; d < D; ++d) {
               sum[d] += factor * pair.r[d];
             }
           });
     }
+    interface_depth_[i] = depth_(sum_lanes(share));
     double squared = 0;
     surface_force_[i] = {};
     for (std::size_t d = 0; d < D; ++d) {
@@ -252,7 +256,8 @@ void ClosedFlow::sum_interface() {
                                  volume, gradient);
         });
     const Matrix<D> change = full<D>(sums.change);
-    curvature_[i] = change.cwiseProduct(inverse<D>(symmetric<D>(sums.moment))).sum();
+    curvature_[i] = curvature_at_interface(
+        change.cwiseProduct(inverse<D>(symmetric<D>(sums.moment))).sum(), interface_depth_[i], D);
     Eigen::Matrix<double, D, 1> gradient, normal;
     for (int a = 0; a < D; ++a) {
       const auto d = static_cast<std::size_t>(a);
