@@ -51,7 +51,7 @@ Values fit(const MetalGrid& grid, const Particles& p, const Vector& at) {
     most = most.cwiseMax(v);
     ++count;
   });
-  const Values mean = right.row(0) / normal(0, 0);
+  Values mean = right.row(0) / normal(0, 0);
   if (count < 8) {
     return mean;
   }
