@@ -18,8 +18,21 @@ InputTable flow_table(FlowInput& f) {
       .flag(f.enabled,
             {.name = "enabled", .about = "Let the melt flow; false: heat and species alone."})
       .text(f.surroundings, {.name = "surroundings",
-                             .about = "What is not metal: nothing at all (a free surface).",
-                             .choices = {"free"}})
+                             .about = "What is not metal: nothing at all (a free surface), or gas "
+                                      "particles in the closed multi-phase form of the paper.",
+                             .choices = {"free", "gas"}})
+      .quantity(f.gas.density_ratio, {.name = "gas_density_ratio",
+                                      .unit = "1",
+                                      .about = "Metal over gas; steps shrink with its square root.",
+                                      .minimum = 1,
+                                      .maximum = 10000})
+      .quantity(f.gas.viscosity,
+                {.name = "gas_viscosity", .unit = "Pa s", .about = "Of the gas.", .minimum = 0})
+      .quantity(f.gas.height, {.name = "gas_height",
+                               .unit = "m",
+                               .about = "Of the gas above the highest metal.",
+                               .minimum = 1e-6,
+                               .maximum = 1e-2})
       .quantity(s.sound_speed,
                 {.name = "sound_speed",
                  .unit = "m s-1",

@@ -9,13 +9,15 @@
 #include "base/input.hpp"
 #include "base/material.hpp"
 #include "solver/flow/free_surface.hpp"
+#include "solver/multiphase/gas.hpp"
 
 namespace meltproof::solver {
 
 /// What [flow] says.
 struct FlowInput {
   bool enabled = true;
-  std::string surroundings = "free";  ///< "free" surface
+  std::string surroundings = "free";  ///< "free" surface, or "gas"
+  GasSettings gas;
   std::string cure = "repulsion";     ///< "none", "repulsion", "transport"
   FlowSettings settings;
   double smallest_drop = 20e-6;  ///< m, radius of the smallest drop whose pressure must be held

@@ -141,6 +141,10 @@ Input declare(TrackCase& t) {
              .about = "Eqs. 3-4 as printed, first order in time but below the error in space "
                       "(errata 5), or a midpoint step of second order.",
              .choices = {"midpoint", "as_printed"}})
+      .flag(t.surface_conduction,
+            {.name = "surface_conduction",
+             .about = "Restores the conduction along free surfaces, where a particle lacks the "
+                      "neighbours outside; verified on a plate at rest (moving_source)."})
       .flag(t.evaporation, {.name = "evaporation", .about = "Heat taken by evaporation."})
       .flag(t.radiation, {.name = "radiation", .about = "Heat lost by radiation."})
       .quantity(t.ambient_temperature, {.name = "ambient_temperature",
@@ -229,6 +233,7 @@ Model make_model(const TrackCase& t, const Domain& domain) {
   model.domain = domain;
   model.smoothing_ratio = t.smoothing_ratio;
   model.species = t.species;
+  model.surface_conduction = t.surface_conduction;
   model.species_factor =
       t.species_factor == "as_printed" ? SpeciesFactor::as_printed : SpeciesFactor::consistent;
   model.species_scheme =
@@ -254,6 +259,9 @@ Model make_model(const TrackCase& t, const Domain& domain) {
       .vapour_heat = t.vapour_heat == "latent" ? VapourHeat::latent
                                                : VapourHeat::latent_and_sensible};
   model.flow = flow_settings(t.flow, t.form == "as_printed" ? 20 : 1);
+  if (t.flow.enabled && t.flow.surroundings == "gas") {
+    model.gas = t.flow.gas;
+  }
   // Heat that has warmed nothing by a thousandth of a kelvin is not felt.
   model.sleep_below = 1e-3;
   model.freezing_fraction = t.flow.freezing_fraction;

@@ -34,6 +34,7 @@ struct TrackCase {
   double before = 150e-6, behind = 150e-6, width = 400e-6, depth = 200e-6;
 
   bool species = true, evaporation = true, radiation = true;
+  bool surface_conduction = false;
   std::string species_factor = "consistent", species_scheme = "as_printed",
               species_operator = "fourth";
   double ambient_temperature = 293.15, ambient_pressure = 101325;

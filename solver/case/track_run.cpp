@@ -146,6 +146,10 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
   std::size_t snapshots = 0, history = 1;
   write_snapshot(writer, snapshots++, engine);
   const double end = t.exposure + t.cooling_limit;
+  const AcceptanceSettings judged = track_acceptance(made.domain.lower, made.domain.upper,
+                                                     t.speed * t.exposure, t.beam_radius);
+  // At the end all is solid: how the melt fared is measured as the beam goes off.
+  Acceptance melt;
   double beam_balance = 0;
   {
     Progress progress(name, t.exposure);
@@ -175,6 +179,9 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
               fmt::format("step {}, t {:.1f} us, dt {:.3f} us, pool {:.0f} um, peak {:.0f} K",
                           engine.steps(), 1e6 * now.time, 1e6 * dt, 1e6 * now.pool.length,
                           now.peak_temperature));
+        }
+        if (engine.time() == t.exposure) {
+          melt = measure_acceptance(engine.particles(), judged);
         }
         if (engine.time() > t.exposure && !melt_left(engine) &&
             (engine.model().flow || (!now.pool.found && !now.any_liquid.found))) {
@@ -234,9 +241,9 @@ nlohmann::json run_track(const TrackCase& t, const std::string& name,
   result["steady_state"] = steadiness_json(lines, start_up_length(track) / t.speed, t.exposure);
   result["steady"] = result["steady_state"]["pool_length"]["sentence"];
   add_fusion_zone(result, t, engine);
-  const Acceptance acceptance = measure_acceptance(
-      engine.particles(),
-      track_acceptance(made.domain.lower, made.domain.upper, track, t.beam_radius));
+  Acceptance acceptance = measure_acceptance(engine.particles(), judged);
+  acceptance.liquid = melt.liquid;
+  acceptance.liquid_volume = melt.liquid_volume;
   result["acceptance"] = acceptance.json();
   const Timings timings{{"heat", w.heat},   {"species", w.species}, {"surface", w.surface},
                         {"state", w.state}, {"lists", w.lists},     {"flow", w.flow}};

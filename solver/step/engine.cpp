@@ -397,7 +397,7 @@ double Engine::step(double until) {
     find_awake(heat_records_, neighbours_.list(), heat_active_);
     conduct(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
     if (model_.surface_conduction) {
-      surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, conducted_);
+      surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
     }
   }
   watch.lap(times_.heat);

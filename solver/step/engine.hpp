@@ -8,6 +8,7 @@
 
 #include "base/material.hpp"
 #include "solver/flow/free_surface.hpp"
+#include "solver/multiphase/gas.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/neighbours.hpp"
@@ -44,6 +45,8 @@ struct Model {
   /// themselves, K; zero: everybody does. For a domain that begins at one temperature.
   double sleep_below = 0;
   std::optional<FlowSettings> flow;  ///< none: particles stay where they are
+  /// With flow: gas around the metal, as a closed multi-phase flow; none: a free surface.
+  std::optional<GasSettings> gas;
   /// With flow: acoustic steps in a thermal one, at most.
   int flow_steps = 10;
   /// With flow: a liquid particle becomes wall below this liquid fraction; melting needs 1. The
@@ -85,6 +88,8 @@ class Engine {
   const LaserBudget& beam() const { return beam_; }
   /// The flow; throws std::bad_optional_access if the model has none.
   const FreeSurfaceFlow& flow() const { return flow_.value(); }
+  /// The gas around the metal, or none.
+  const GasFlow* gas() const { return gas_ ? &*gas_ : nullptr; }
   const StepTimes& times() const { return times_; }
   std::size_t flow_steps() const { return flow_count_; }  ///< acoustic steps so far
   std::size_t list_builds() const { return list_builds_; }
@@ -117,6 +122,7 @@ class Engine {
   void refresh_melt();
   void rebuild_lists(bool everything);
   void advance_flow(double dt, int steps);
+  void advance_gas(double dt);
   double largest_speed() const;
 
   Particles particles_;
@@ -142,6 +148,7 @@ class Engine {
   std::size_t steps_ = 0;
 
   std::optional<FreeSurfaceFlow> flow_;
+  std::optional<GasFlow> gas_;
   MeltProperties melt_;
   std::vector<std::uint8_t> mobile_;
   std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built

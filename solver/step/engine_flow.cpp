@@ -25,6 +25,24 @@ void Engine::start_flow() {
   refresh_melt();
   flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
   flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
+  if (model_.gas) {
+    gas_.emplace(particles_, model_.domain, flow_->settings(), *model_.gas);
+  }
+}
+
+/// The closed flow moves the melt; the free surface's interface then says how much of it is bare.
+void Engine::advance_gas(double dt) {
+  flow_count_ += static_cast<std::size_t>(gas_->advance(particles_, melt_, dt));
+  double farthest = 0;
+  for (const std::uint32_t i : flow_->liquid()) {
+    const Vector &a = particles_.position[i], &b = built_at_[i];
+    farthest = std::max(farthest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+  }
+  if (farthest > neighbours_.skin() / 2) {
+    rebuild_lists(false);
+  }
+  flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
+  flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
 }
 
 void Engine::set_state(const std::vector<Vector>& velocity, const std::vector<double>& density) {
@@ -165,7 +183,8 @@ void Engine::rebuild_lists(bool everything) {
   built_at_ = particles_.position;
   place_records();
   if (model_.surface_conduction) {
-    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
+    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_,
+                               everything ? nullptr : &heat_active_);
   }
   refresh_ghosts();
 }
@@ -201,6 +220,12 @@ void Engine::advance_flow(double dt, int steps) {
   }
   refresh_melt();
   flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
+  if (gas_) {
+    advance_gas(dt);
+    place_records();
+    lap(times.flow);
+    return;
+  }
   const double small = dt / steps;
   const double allowed = neighbours_.skin() / 2;
   for (int s = 0; s < steps; ++s) {
