@@ -39,6 +39,7 @@ help:
 	@echo '  make verify                   only the cases with exact solutions'
 	@echo '  make figures                  only the figures'
 	@echo '  make report                   only the report (makes what it is missing)'
+	@echo '  make studies                  runs that differ in one number: resolution, numerical choices, physics'
 	@echo '  make clean                    removes everything generated: build/ and what reports/ holds'
 	@echo
 	@echo '  PROFILE=smoke|desk|paper      how fine: minutes in CI; the default; a cluster  (now $(PROFILE))'
@@ -52,6 +53,7 @@ help:
 
 include pipelines/setup.mk
 include pipelines/verify.mk
+include pipelines/studies.mk
 include pipelines/validate.mk
 include pipelines/report.mk
 include pipelines/recording.mk

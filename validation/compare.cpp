@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
                   "or is not as declared.\n\n"
                   "  meltproof-compare --table validation/comparisons.toml --results reports/work "
                   "--profile desk \\\n    --output reports/validation.json");
-  std::string table_path, results, profile, output, verification, experiments;
+  std::string table_path, results, profile, output, verification, experiments, studies;
   bool schema = false, reference = false;
   auto& app = program.app;
   app.add_option("--table", table_path, "the comparison table (TOML)");
@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
                  "verification.json; default: beside the folder of the results");
   app.add_option("--experiments", experiments,
                  "folder of the campaigns; default: data/experiments beside the table's folder");
+  app.add_option("--studies", studies,
+                 "studies.json of meltproof-studies; without it u_num holds no study");
   app.add_flag("--schema", schema, "print the JSON Schema of the table and stop");
   app.add_flag("--reference", reference, "print the reference page of the table and stop");
   return program.run(argc, argv, [&] {
@@ -58,11 +60,16 @@ int main(int argc, char** argv) {
                             ? (fs::path(results) / "../verification.json").lexically_normal()
                             : fs::path(verification),
                         experiments.empty() ? (base / "../data/experiments").lexically_normal()
-                                            : fs::path(experiments)};
+                                            : fs::path(experiments),
+                        studies};
     const auto rows = run_table(table, places);
 
     std::set<fs::path> read = {table_path};
-    for (const auto& row : table.rows) {
+    if (fs::is_regular_file(places.studies)) {
+      read.insert(places.studies);
+    }
+    for (const auto& result : rows) {
+      const Row& row = result.row;
       for (const auto& path : simulated_files(row, places)) {
         if (fs::is_regular_file(path)) {
           read.insert(path);

@@ -96,6 +96,89 @@ TEST_F(Results, TheSpacingEntersTheNumericalUncertainty) {
   EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
 }
 
+TEST_F(Results, AStudyTakesThePlaceOfTheSpacing) {
+  Row row = width_row();
+  row.simulated.spacing = "/spacing_m";
+  row.simulated.uncertainty = "/u_m";
+  row.simulated.study = "width";
+  put("desk/track.json", {{"width_m", 120e-6}, {"spacing_m", 10e-6}, {"u_m", 3e-6}});
+  const auto without = run_row(row, places_);
+  EXPECT_NEAR(*without.numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
+  EXPECT_EQ(without.numbers.details["u_val_is_lower_bound"], true);
+  places_.studies = folder_ / "studies.json";
+  put("studies.json", {{"quantities", {{"width", {{"relative_u", 0.05}}}}}});
+  EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::hypot(3, 6), 1e-9);
+  put("studies.json", {{"quantities", {{"width", {{"relative_u", nullptr}}}}}});
+  EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
+}
+
+TEST_F(Results, ARowMayStandForSeveral) {
+  ComparisonTable table;
+  Row row;
+  row.name = "lost_{}";
+  row.title = "Particles lost, {}";
+  row.for_each = {"a", "b"};
+  row.metric = "number";
+  row.rule = "at_least";
+  row.limit = -1;
+  row.verdict = "agrees";
+  row.simulated = {.file = "{}.json", .value = "/height", .over = "/spacing"};
+  table.rows.push_back(row);
+  Row own = row;
+  own.for_each.clear();
+  own.name = "lost_b";
+  own.simulated.file = "b.json";
+  own.verdict = "differs";
+  table.rows.push_back(own);
+  put("desk/a.json", {{"height", -9}, {"spacing", 10}});
+  put("desk/b.json", {{"height", -11}, {"spacing", 10}});
+  const auto results = run_table(table, places_);
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].row.title, "Particles lost, a");
+  EXPECT_NEAR(*results[0].numbers.simulated, -0.9, 1e-12);
+  EXPECT_EQ(results[0].verdict, "agrees");
+  EXPECT_EQ(results[1].verdict, "differs");
+  EXPECT_EQ(results[1].failure, "");
+}
+
+TEST_F(Results, EveryVerificationCaseHasARowWithoutBeingTyped) {
+  ComparisonTable table;
+  Row row = error_row();
+  row.name = "cases";
+  row.every_case = true;
+  row.limit = 0.1;
+  row.simulated.verification_case = "{}";
+  table.rows.push_back(row);
+  EXPECT_NE(run_table(table, places_)[0].failure, "");
+  put("verification.json",
+      {{"cases",
+        {{{"name", "slab"}, {"title", "Slab"}, {"error", 0.02}, {"asked", 0.01}},
+         {{"name", "drop"}, {"title", "Drop"}, {"error", 0.09}, {"asked", 0.1}},
+         {{"name", "loose"}, {"title", "Loose"}, {"error", 0.09}, {"asked", 0.2}},
+         {{"name", "torn"},
+          {"title", "Torn"},
+          {"error", 0.0},
+          {"asked", 0.1},
+          {"broken", {"it is not at rest"}}}}},
+       {"not_run", {"cavity"}}});
+  const auto results = run_table(table, places_);
+  ASSERT_EQ(results.size(), 5u);
+  EXPECT_EQ(results[0].verdict, "differs");
+  EXPECT_EQ(results[1].verdict, "agrees");
+  EXPECT_EQ(results[1].row.title, "Drop");
+  EXPECT_EQ(results[2].verdict, "not computed");  // asks less than the table allows
+  EXPECT_EQ(results[3].verdict, "differs");
+  EXPECT_NE(results[3].finding.find("not at rest"), std::string::npos);
+  EXPECT_NE(results[4].failure.find("cavity"), std::string::npos);
+}
+
+TEST_F(Results, AnErrorCountsBySize) {
+  Row row = error_row();
+  row.simulated = {.file = "a.json", .value = "/e"};
+  put("desk/a.json", {{"e", -0.03}});
+  EXPECT_EQ(run_row(row, places_).verdict, "differs");
+}
+
 TEST_F(Results, AMissingNumberIsNamedAndFails) {
   const Row row = width_row();
   EXPECT_NE(run_row(row, places_).failure.find("track.json is missing"), std::string::npos);

@@ -23,6 +23,7 @@ RowNumbers difference(const Row& row, const Places& places) {
   const auto simulated = simulated_number(row, row.simulated.file, places);
   n.simulated = simulated.value;
   n.u_num = simulated.uncertainty;
+  n.details["u_num_parts"] = simulated.parts;
   if (n.measured) {
     const auto e = validation_error(*n.simulated, *n.measured,
                                     {.numerical = n.u_num, .input = n.u_input, .data = n.u_data},
@@ -31,7 +32,7 @@ RowNumbers difference(const Row& row, const Places& places) {
     n.u_val = e.uncertainty;
     n.lower = e.lower;
     n.upper = e.upper;
-    n.details["u_val_is_lower_bound"] = !e.complete;
+    n.details["u_val_is_lower_bound"] = !e.complete || !simulated.studied;
   }
   return n;
 }
@@ -39,7 +40,7 @@ RowNumbers difference(const Row& row, const Places& places) {
 RowNumbers error_norm(const Row& row, const Places& places) {
   RowNumbers n;
   if (row.simulated.verification_case.empty()) {
-    n.simulated = simulated_number(row, row.simulated.file, places).value;
+    n.simulated = std::abs(simulated_number(row, row.simulated.file, places).value);
     return n;
   }
   const auto found = verification_number(row, places);
@@ -50,6 +51,15 @@ RowNumbers error_norm(const Row& row, const Places& places) {
                                  found.asked, row.limit));
   }
   n.simulated = found.error;
+  if (!found.broken.empty()) {
+    n.details["broken"] = found.broken;
+  }
+  return n;
+}
+
+RowNumbers number(const Row& row, const Places& places) {
+  RowNumbers n;
+  n.simulated = simulated_number(row, row.simulated.file, places).value;
   return n;
 }
 
@@ -112,6 +122,7 @@ using Metric = RowNumbers (*)(const Row&, const Places&);
 const std::map<std::string, Metric>& metrics() {
   static const std::map<std::string, Metric> all = {{"difference", difference},
                                                     {"error_norm", error_norm},
+                                                    {"number", number},
                                                     {"curve", curve},
                                                     {"trend", trend_of}};
   return all;

@@ -13,7 +13,8 @@ namespace meltproof::validation {
 
 /// Names that a row's `metric` may take:
 /// - difference: S and D are one number each; V&V 20.
-/// - error_norm: S is an error, of a verification case or of a balance; no reference.
+/// - error_norm: S is the size of an error, of a verification case or of a balance; no reference.
+/// - number: S is a number as it is; no reference.
 /// - curve: S is the RMSE of a line scan against a measured curve, from linescan.json.
 /// - trend: S is the smallest rise along the settings that the reference ranks.
 std::vector<std::string> metric_names();

@@ -28,6 +28,13 @@ struct Rule {
 
 const std::map<std::string, Rule>& rules() {
   static const std::map<std::string, Rule> all = {
+      {"at_least",
+       {[](const Row& row, const RowNumbers& n) {
+          return needed(row, n.simulated, "S") >= row.limit;
+        },
+        [](const Row& row) {
+          return fmt::format("S >= {:g}{}", row.limit, row.unit == "1" ? "" : " " + row.unit);
+        }}},
       {"at_most",
        {[](const Row& row, const RowNumbers& n) {
           return needed(row, n.simulated, "S") <= row.limit;

@@ -11,7 +11,7 @@
 namespace meltproof::validation {
 
 /// Names that a row's `rule` may take:
-/// - within_uncertainty: |E| <= k u_val. - at_most: S <= limit.
+/// - within_uncertainty: |E| <= k u_val. - at_most: S <= limit. - at_least: S >= limit.
 /// - rises: every step of the trend rises by more than k times its uncertainty.
 std::vector<std::string> rule_names();
 

@@ -44,6 +44,23 @@ double number_at(const json& document, const std::string& pointer,
   return value.get<double>();
 }
 
+namespace {
+
+/// The relative standard uncertainty that the studies found for a quantity.
+std::optional<double> studied_share(const std::string& quantity, const Places& places) {
+  if (quantity.empty() || !std::filesystem::is_regular_file(places.studies)) {
+    return std::nullopt;
+  }
+  const json document = read_json(places.studies);
+  const json quantities = document.value("quantities", json::object());
+  if (!quantities.contains(quantity) || quantities[quantity]["relative_u"].is_null()) {
+    return std::nullopt;  // none of its runs is there yet
+  }
+  return number_at(document, "/quantities/" + quantity + "/relative_u", places.studies);
+}
+
+}  // namespace
+
 SimulatedNumber simulated_number(const Row& row, const std::string& file, const Places& places) {
   const auto& source = row.simulated;
   const auto path = places.results / file;
@@ -52,15 +69,24 @@ SimulatedNumber simulated_number(const Row& row, const std::string& file, const 
     return convert_unit(number_at(document, pointer, path), source.unit, row.unit);
   };
   SimulatedNumber result;
-  result.value = in_unit(source.value);
-  double square = 0;
+  result.value = source.over.empty() ? in_unit(source.value)
+                                     : number_at(document, source.value, path) /
+                                           number_at(document, source.over, path);
   if (!source.uncertainty.empty()) {
-    square += std::pow(in_unit(source.uncertainty), 2);
+    result.parts["scatter"] = in_unit(source.uncertainty);
   }
-  if (!source.spacing.empty()) {
-    square += std::pow(in_unit(source.spacing), 2) / 6;
+  const auto share = studied_share(source.study, places);
+  result.studied = source.study.empty() || share.has_value();
+  if (share) {
+    result.parts["studies"] = *share * std::abs(result.value);
+  } else if (!source.spacing.empty()) {
+    result.parts["spacing"] = in_unit(source.spacing) / std::sqrt(6.0);
   }
-  if (!source.uncertainty.empty() || !source.spacing.empty()) {
+  double square = 0;
+  for (const auto& part : result.parts) {
+    square += std::pow(part.get<double>(), 2);
+  }
+  if (!result.parts.empty()) {
     result.uncertainty = std::sqrt(square);
   }
   return result;
@@ -77,8 +103,12 @@ VerificationNumber verification_number(const Row& row, const Places& places) {
     throw InputError(fmt::format("{}: it holds no case \"{}\" among its {}.",
                                  places.verification.string(), wanted, cases.size()));
   }
-  return {number_at(*at, "/error", places.verification),
-          number_at(*at, "/asked", places.verification)};
+  VerificationNumber result{number_at(*at, "/error", places.verification),
+                            number_at(*at, "/asked", places.verification)};
+  for (const auto& sentence : at->value("broken", json::array())) {
+    result.broken.push_back(sentence.get<std::string>());
+  }
+  return result;
 }
 
 std::vector<std::filesystem::path> simulated_files(const Row& row, const Places& places) {

@@ -20,6 +20,7 @@ struct Places {
   std::filesystem::path results;       ///< of the profile: reports/work/<profile>
   std::filesystem::path verification;  ///< verification.json
   std::filesystem::path experiments;   ///< data/experiments
+  std::filesystem::path studies = {};  ///< of meltproof-studies; empty or missing: no study yet
 };
 
 /// @throws InputError naming the file if it is missing or no JSON.
@@ -33,13 +34,17 @@ double number_at(const nlohmann::json& document, const std::string& pointer,
 /// A simulated number in the row's unit.
 struct SimulatedNumber {
   double value = 0;
-  std::optional<double> uncertainty;  ///< u_num: its own scatter and that of the spacing
+  std::optional<double> uncertainty;  ///< u_num: own scatter, spacing, numerical choices
+  /// What u_num is made of, in the row's unit: "scatter" and either "spacing" or "studies".
+  nlohmann::json parts = nlohmann::json::object();
+  bool studied = true;  ///< false: the row names a study whose results are not there
 };
 SimulatedNumber simulated_number(const Row& row, const std::string& file, const Places& places);
 
 /// A case of verification.json: its error and what was asked of it.
 struct VerificationNumber {
   double error = 0, asked = 0;
+  std::vector<std::string> broken = {};  ///< other conditions of the case that its run did not hold
 };
 VerificationNumber verification_number(const Row& row, const Places& places);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/compare/table.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
@@ -22,9 +23,15 @@ InputTable simulated_table(SimulatedSource& s) {
       .text(s.value, {.name = "value", .about = "JSON pointer to the number."})
       .text(s.uncertainty,
             {.name = "uncertainty", .about = "JSON pointer to its standard uncertainty."})
+      .text(s.over, {.name = "over",
+                     .about = "JSON pointer to a number of the same file that divides `value`."})
       .text(s.spacing, {.name = "spacing",
                         .about = "JSON pointer to the particle spacing: both edges of an extent "
-                                 "are taken as known to within one, so u = spacing / sqrt(6)."})
+                                 "are taken as known to within one, so u = spacing / sqrt(6). "
+                                 "Where `study` knows better, it is left out."})
+      .text(s.study, {.name = "study",
+                      .about = "Quantity of the studies (length, width, depth) whose relative "
+                               "uncertainty by spacing and numerical choices enters u_num."})
       .text(s.unit, {.name = "unit", .about = "Of these numbers (udunits2)."});
   return table;
 }
@@ -50,6 +57,14 @@ InputTable reference_table(ReferenceSource& r) {
 InputTable row_table(Row& row) {
   InputTable table("row", "One comparison.");
   table.text(row.name, {.name = "name", .about = "Short and unique.", .required = true})
+      .texts(row.for_each, {.name = "for_each",
+                            .about = "The row stands for one row per word, which replaces {} in "
+                                     "name, title, case and file. Another row that has such a "
+                                     "name counts instead."})
+      .flag(row.every_case,
+            {.name = "every_case",
+             .about = "The row stands for one row per verification case that no other row names; "
+                      "each keeps to what its case asks, at most `limit`."})
       .text(row.title, {.name = "title", .about = "For the report.", .required = true})
       .text(row.kind, {.name = "kind",
                        .about = "Against an exact solution, a published computation, a "
@@ -70,8 +85,7 @@ InputTable row_table(Row& row) {
       .text(row.rule_reason, {.name = "rule_reason", .about = "Why this rule.", .required = true})
       .quantity(row.limit, {.name = "limit",
                             .unit = "1",
-                            .about = "Of the rule at_most, a number in the row's unit.",
-                            .minimum = 0})
+                            .about = "Of the rules at_most and at_least, in the row's unit."})
       .quantity(row.coverage, {.name = "coverage",
                                .unit = "1",
                                .about = "k: how many standard uncertainties a rule allows.",
@@ -120,6 +134,12 @@ void check(const ComparisonTable& table, const std::filesystem::path& path) {
                       : "it waits_for something although its verdict is not pending");
     }
     const auto& s = row.simulated;
+    if (row.every_case) {
+      if (!s.value.empty() || !s.file.empty() || !row.for_each.empty()) {
+        refuse(row, "it stands for every_case, so it takes no for_each, file or value");
+      }
+      continue;
+    }
     const int sources = (s.verification_case.empty() ? 0 : 1) + (s.file.empty() ? 0 : 1) +
                         (s.files.empty() ? 0 : 1);
     if (sources != 1) {
@@ -128,10 +148,74 @@ void check(const ComparisonTable& table, const std::filesystem::path& path) {
     if (s.verification_case.empty() && s.value.empty()) {
       refuse(row, "[row.simulated] names no value: expected a JSON pointer");
     }
-    if (row.metric != "error_norm" && !row.has_reference) {
+    if (row.metric != "error_norm" && row.metric != "number" && !row.has_reference) {
       refuse(row, fmt::format("the metric \"{}\" needs a [row.reference]", row.metric));
     }
   }
+}
+
+namespace {
+
+std::string filled(std::string text, const std::string& word) {
+  for (auto at = text.find("{}"); at != std::string::npos; at = text.find("{}", at + word.size())) {
+    text.replace(at, 2, word);
+  }
+  return text;
+}
+
+/// One row per case that ran or should have.
+std::vector<Row> rows_of_cases(const Row& row, const nlohmann::json& verification) {
+  std::vector<Row> rows;
+  const auto add = [&](const std::string& name, const std::string& title, double asked) {
+    Row one = row;
+    one.name = one.simulated.verification_case = name;
+    one.title = title;
+    one.limit = std::min(asked, row.limit);
+    rows.push_back(std::move(one));
+  };
+  for (const auto& entry : verification.value("cases", nlohmann::json::array())) {
+    add(entry.value("name", ""), entry.value("title", ""), entry.value("asked", row.limit));
+  }
+  // A case without a result has no row to be judged by: it must fail, not vanish.
+  for (const auto& name : verification.value("not_run", nlohmann::json::array())) {
+    add(name.get<std::string>(), name.get<std::string>() + ", without a result", row.limit);
+  }
+  return rows.empty() ? std::vector{row} : rows;
+}
+
+}  // namespace
+
+std::deque<Row> expand(const ComparisonTable& table, const nlohmann::json& verification) {
+  std::set<std::string> written;
+  for (const auto& row : table.rows) {
+    if (row.for_each.empty() && !row.every_case) {
+      written.insert(row.name);
+    }
+  }
+  std::deque<Row> result;
+  for (const auto& row : table.rows) {
+    std::vector<Row> several;
+    if (row.every_case) {
+      several = rows_of_cases(row, verification);
+    }
+    for (const auto& word : row.for_each) {
+      Row one = row;
+      one.name = filled(row.name, word);
+      one.title = filled(row.title, word);
+      one.simulated.verification_case = filled(row.simulated.verification_case, word);
+      one.simulated.file = filled(row.simulated.file, word);
+      several.push_back(std::move(one));
+    }
+    if (row.for_each.empty() && !row.every_case) {
+      result.push_back(row);
+    }
+    for (auto& one : several) {
+      if (written.insert(one.name).second) {
+        result.push_back(std::move(one));
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace meltproof::validation

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/input.hpp"
 
 namespace meltproof::validation {
@@ -19,8 +21,10 @@ struct SimulatedSource {
   std::vector<std::string> files = {};  ///< JSON, in the order of the settings of a trend
   std::string value = {};               ///< JSON pointer to the number, "/pool_length_um"
   std::string uncertainty = {};         ///< JSON pointer to its standard uncertainty; empty: none
+  std::string over = {};                ///< JSON pointer to a number that divides the first
   std::string spacing = {};             ///< JSON pointer to the particle spacing; empty: none
-  std::string unit = "1";               ///< of value, uncertainty and spacing
+  std::string study = {};  ///< quantity of the studies whose share enters u_num; empty: none
+  std::string unit = "1";  ///< of value, uncertainty and spacing
 };
 
 /// Where the measured number of a row stands.
@@ -34,6 +38,9 @@ struct ReferenceSource {
 
 struct Row {
   std::string name, title;
+  /// Not empty: the row stands for one row per word, which replaces {} in name, title, case, file.
+  std::vector<std::string> for_each = {};
+  bool every_case = false;  ///< the row stands for one row per verification case
   std::string kind;         ///< verification, benchmark, validation, trend
   std::string quantity;     ///< length, width, depth, ...: rows of one quantity share a statistic
   std::string unit = "1";   ///< of S, D, E and u
@@ -41,7 +48,7 @@ struct Row {
   std::string metric;       ///< what is computed, see compare/metric.hpp
   std::string rule;         ///< when it agrees, see compare/rule.hpp
   std::string rule_reason;  ///< why this rule
-  double limit = 0;         ///< of rule "at_most", in `unit`
+  double limit = 0;         ///< of rules "at_most" and "at_least", in `unit`
   double coverage = 2;      ///< k of the rules with an uncertainty
   std::optional<double> input_uncertainty;  ///< u_input in `unit`; absent: not evaluated
   std::string figure;
@@ -65,5 +72,10 @@ Input comparison_input(ComparisonTable& table);
 ///         what it waits for or another one that does, a row without a simulated source, a metric
 ///         "difference", "curve" or "trend" without a reference.
 void check(const ComparisonTable& table, const std::filesystem::path& path);
+
+/// The rows with those that stand for several written out, in the order of the table; a row that
+/// another one would write out too counts instead of it.
+/// @param verification verification.json; without it a row for every_case stays as it is.
+std::deque<Row> expand(const ComparisonTable& table, const nlohmann::json& verification);
 
 }  // namespace meltproof::validation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/metrics/grid_convergence.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -43,6 +44,56 @@ GridConvergence grid_convergence(const std::array<double, 3>& values, double rat
   result.index_coarse = safety * std::abs(coarse_step / middle) / gain;
   result.asymptotic = result.index_coarse / ((gain + 1) * result.index_fine);
   result.uncertainty = 0.5 * result.index_fine * std::abs(fine);
+  return result;
+}
+
+namespace {
+
+/// (h3^p - h2^p) / (h2^p - h1^p), which grows with p.
+double step_ratio(const std::array<double, 3>& h, double p) {
+  const double fine = std::pow(h[0], p), middle = std::pow(h[1], p), coarse = std::pow(h[2], p);
+  return (coarse - middle) / (middle - fine);
+}
+
+}  // namespace
+
+ResolutionSeries resolution_series(const std::array<double, 3>& spacings,
+                                   const std::array<double, 3>& values) {
+  const auto& [h1, h2, h3] = spacings;
+  const auto& [fine, middle, coarse] = values;
+  if (!(h1 > 0) || !(h2 > h1) || !(h3 > h2)) {
+    throw InputError(fmt::format(
+        "the spacings {}, {}, {} are no series: expected three that increase.", h1, h2, h3));
+  }
+  const double lowest = 0.5, formal = 2, highest = 20;
+  const double range = std::max({fine, middle, coarse}) - std::min({fine, middle, coarse});
+  const double found = (coarse - middle) / (middle - fine);
+  const std::array<double, 3> scaled = {h1 / h3, h2 / h3, 1};
+  ResolutionSeries result;
+  if ((coarse - middle) * (middle - fine) <= 0) {
+    result.behaviour = "oscillates";
+    result.uncertainty.fill(range / 4);
+    return result;
+  }
+  if (found < step_ratio(scaled, lowest)) {
+    result.behaviour = "unsettled";
+    result.uncertainty.fill(1.5 * range);
+    return result;
+  }
+  result.behaviour = "converges";
+  double low = lowest, high = highest;
+  for (int i = 0; i < 100; ++i) {
+    const double order = 0.5 * (low + high);
+    (step_ratio(scaled, order) < found ? low : high) = order;
+  }
+  result.order = 0.5 * (low + high);
+  result.order_used = std::min(result.order, formal);
+  const double p = result.order_used;
+  const double gain = std::pow(h2 / h1, p) - 1;
+  result.extrapolated = fine - (middle - fine) / gain;
+  for (std::size_t i = 0; i < 3; ++i) {
+    result.uncertainty[i] = 0.5 * 1.25 * std::abs(values[i] - result.extrapolated);
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 namespace meltproof::validation {
 
@@ -26,6 +27,25 @@ struct GridConvergence {
 ///         has no observed order and no GCI.
 GridConvergence grid_convergence(const std::array<double, 3>& values, double ratio,
                                  double safety = 1.25);
+
+/// What three spacings, whatever their ratios, tell of the uncertainty of each value.
+struct ResolutionSeries {
+  /// "converges": monotone, and the steps shrink at least as with order 0.5. "oscillates": the
+  /// steps have opposite signs. "unsettled": monotone, but the steps do not shrink so.
+  std::string behaviour;
+  double order = 0;         ///< observed; only where it converges
+  double order_used = 0;    ///< the observed one, at most 2, which the scheme has inside the metal
+  double extrapolated = 0;  ///< with order_used; only where it converges
+  std::array<double, 3> uncertainty{};  ///< standard, of each value
+};
+
+/// The order p solves (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p). Expanded uncertainties
+/// (k = 2) are, where the series converges, 1.25 |f_i - f_exact| (the GCI of value i); where it
+/// oscillates, half of the range (Stern et al. 2001); where it is unsettled, three times the range
+/// (Eca & Hoekstra 2014).
+/// @param spacings finest first, increasing. @throws InputError if they are not.
+ResolutionSeries resolution_series(const std::array<double, 3>& spacings,
+                                   const std::array<double, 3>& values);
 
 /// GCI of two spacings with an assumed order: safety factor 3, because nothing was observed.
 double two_grid_index(double fine, double coarse, double ratio, double order, double safety = 3.0);

@@ -47,6 +47,36 @@ TEST(GridConvergence, RefusesASeriesWithoutAnOrder) {
   EXPECT_THROW(grid_convergence({0.9705, 0.96854, 0.96178}, 1), InputError);
 }
 
+TEST(GridConvergence, UnequalRatiosGiveTheOrderOfAPowerOfTheSpacing) {
+  const auto f = [](double h) { return 3 - 0.2 * std::pow(h, 1.3); };
+  const auto result = resolution_series({7, 10, 14}, {f(7), f(10), f(14)});
+  EXPECT_EQ(result.behaviour, "converges");
+  EXPECT_NEAR(result.order, 1.3, 1e-9);
+  EXPECT_NEAR(result.extrapolated, 3, 1e-9);
+  EXPECT_NEAR(result.uncertainty[1], 0.5 * 1.25 * (3 - f(10)), 1e-9);
+}
+
+TEST(GridConvergence, EqualRatiosGiveTheIndexOfThePublishedExample) {
+  const auto result = resolution_series({1, 2, 4}, {0.9705, 0.96854, 0.96178});
+  EXPECT_NEAR(result.order, 1.78618, 2e-5);
+  EXPECT_NEAR(100 * 2 * result.uncertainty[0] / 0.9705, 0.10308, 5e-6);
+  EXPECT_NEAR(100 * 2 * result.uncertainty[1] / 0.96854, 0.35625, 5e-6);
+}
+
+TEST(GridConvergence, ASeriesWithoutAnOrderStillHasAnUncertainty) {
+  const auto oscillating = resolution_series({7, 10, 14}, {300, 310, 302});
+  EXPECT_EQ(oscillating.behaviour, "oscillates");
+  EXPECT_NEAR(oscillating.uncertainty[0], 0.5 * 5, 1e-12);
+  const auto unsettled = resolution_series({7, 10, 14}, {300, 310, 315});
+  EXPECT_EQ(unsettled.behaviour, "unsettled");
+  EXPECT_NEAR(unsettled.uncertainty[0], 0.5 * 45, 1e-12);
+  // Faster than the scheme can be: noise, so the formal order counts.
+  const auto noisy = resolution_series({7, 10, 14}, {300, 301, 320});
+  EXPECT_GT(noisy.order, 4);
+  EXPECT_NEAR(noisy.extrapolated, 300 - 1 / (100.0 / 49 - 1), 1e-9);
+  EXPECT_THROW(resolution_series({10, 7, 14}, {1, 2, 3}), InputError);
+}
+
 TEST(GridConvergence, TwoGridsTakeThreeTimesTheDifference) {
   EXPECT_NEAR(two_grid_index(1.0, 0.97, 2, 2), 3 * 0.03 / 3, 1e-12);
 }
