@@ -160,6 +160,10 @@ SteadyState judge_steadiness(const std::vector<double>& time, const std::vector<
     s.count = all.time.size();
     s.mean = mean_of(all.value);
   }
+  if (s.count > 1) {
+    s.deviation =
+        std::sqrt(sum_of_squares(without(all.value, s.mean)) / static_cast<double>(s.count - 1));
+  }
   if (s.count < least_count || s.to - s.from < settings.least_window * (1 - 1e-9)) {
     return s;
   }
@@ -196,12 +200,16 @@ SteadyState judge_steadiness(const std::vector<double>& time, const std::vector<
 std::string SteadyState::sentence(const std::string& name, double scale,
                                   const std::string& unit) const {
   const std::string window = fmt::format("{:.0f} to {:.0f} us", 1e6 * from, 1e6 * to);
+  if (count == 0) {
+    return fmt::format("{}: no values after the start-up, nothing can be said", name);
+  }
   if (verdict == "too short") {
-    return count == 0 ? fmt::format("{}: no values after the start-up, nothing can be said", name)
-                      : fmt::format(
-                            "{}: {} values over {} ({:.1f} independent) are too few to say "
-                            "whether it is steady",
-                            name, count, window, effective);
+    const std::string judged =
+        effective > 0 ? fmt::format(", worth {:.0f} independent", effective) : "";
+    return fmt::format(
+        "{}: too short to say whether it is steady; {} values over {}{}, mean {:.4g} {} (standard "
+        "deviation {:.2g})",
+        name, count, window, judged, scale * mean, unit, scale * deviation);
   }
   std::string text = fmt::format(
       "{}: {}; mean {:.4g} {} (u {:.2g}, {:.0f} independent values) over {}, in which it changes "

@@ -151,7 +151,7 @@ TEST(SteadyState, ASeriesTooShortSaysSo) {
   const SteadyState found = judge_steadiness(s.time, s.value, from(0.35e-3));
   EXPECT_EQ(found.verdict, "too short");
   EXPECT_FALSE(found.has_limit);
-  EXPECT_NE(found.sentence("length", 1e6, "um").find("too few"), std::string::npos);
+  EXPECT_NE(found.sentence("length", 1e6, "um").find("too short to say"), std::string::npos);
   EXPECT_FALSE(found.json("length", 1e6, "um").contains("limit_um"));
   EXPECT_EQ(judge_steadiness({}, {}).verdict, "too short");
 }
