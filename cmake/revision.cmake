@@ -2,7 +2,8 @@
 # Writes OUTPUT with the last commit that touched a folder with code. Commits of text, data or committed results
 # do not change it, so they make no artifact out of date.
 set(code base solver imaging validation cmake CMakeLists.txt
-  ":(exclude)solver/verification/results" ":(exclude)*.md")
+  ":(exclude)solver/verification/results" ":(exclude)validation/results"
+  ":(exclude)validation/comparisons.toml" ":(exclude)*.md")
 execute_process(COMMAND git log -1 --format=%h --abbrev=12 -- ${code}
   WORKING_DIRECTORY ${SOURCE} OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 execute_process(COMMAND git status --porcelain -- ${code}
