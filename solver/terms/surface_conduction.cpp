@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "solver/particles/block_sum.hpp"
 #include "solver/terms/interface.hpp"
@@ -45,12 +47,23 @@ Lane share_of(const SurfaceRecord& own, const SurfaceRecord* all, const std::uin
 
 void SurfaceConduction::update(const std::vector<HeatRecord>& records,
                                const std::vector<Ghost>& ghosts, const NeighbourList& neighbours,
-                               const QuinticSpline& kernel) {
+                               const QuinticSpline& kernel,
+                               const std::vector<std::uint32_t>* among) {
   const std::size_t n = neighbours.last.size();
   const HeatRecord* all = records.data();
-  surface_.assign(records.size(), {});
-  std::vector<std::uint8_t> outer(n, 0);
-  for_each_particle(n, [&](std::size_t i) {
+  std::vector<std::uint32_t> everybody;
+  if (among == nullptr) {
+    everybody.resize(n);
+    std::iota(everybody.begin(), everybody.end(), 0U);
+    among = &everybody;
+    outer_.assign(n, 0);
+    takes_part_.assign(n, 0);
+    surface_.clear();
+  }
+  surface_.resize(records.size());
+  surface_.back() = {};  // the void
+  for_each_particle(among->size(), [&](std::size_t m) {
+    const std::uint32_t i = (*among)[m];
     Lane x = 0, y = 0, z = 0;
     for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
       const Lane weight = gather(all, j, &HeatRecord::volume) * pair.factor;
@@ -60,17 +73,13 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
     });
     const double gx = sum_lanes(x), gy = sum_lanes(y), gz = sum_lanes(z);
     const double size = std::sqrt(gx * gx + gy * gy + gz * gz);
-    if (size * kernel.smoothing_length > interface_threshold) {
-      outer[i] = 1;
-      surface_[i] = {0, -gx / size, -gy / size, -gz / size};
-    }
+    outer_[i] = size * kernel.smoothing_length > interface_threshold ? 1 : 0;
+    surface_[i] =
+        outer_[i] != 0 ? SurfaceRecord{0, -gx / size, -gy / size, -gz / size} : SurfaceRecord{};
   });
-  members_.clear();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (outer[i] != 0) {
-      members_.push_back(i);
-    }
-  }
+  std::vector<std::uint32_t> members;
+  std::copy_if(among->begin(), among->end(), std::back_inserter(members),
+               [&](std::uint32_t i) { return outer_[i] != 0; });
   const auto refresh_images = [&] {
     for (std::size_t g = 0; g < ghosts.size(); ++g) {
       const SurfaceRecord& source = surface_[ghosts[g].source];
@@ -78,11 +87,11 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
       surface_[n + g] = {source.gain, normal[0], normal[1], normal[2]};
     }
   };
-  std::vector<double> gain(members_.size());
+  std::vector<double> gain(members.size());
   for (int sweep = 0; sweep < 6; ++sweep) {
     refresh_images();
-    for_each_particle(members_.size(), [&](std::size_t m) {
-      const std::uint32_t i = members_[m];
+    for_each_particle(members.size(), [&](std::size_t m) {
+      const std::uint32_t i = members[m];
       const SurfaceRecord own = surface_[i];
       const SurfaceRecord along{1, own.nx, own.ny, own.nz};
       Lane moment = 0, stiffness = 0;
@@ -99,40 +108,41 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
                                        largest_gain)
                           : 0;
     });
-    for (std::size_t m = 0; m < members_.size(); ++m) {
-      surface_[members_[m]].gain = gain[m];
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      surface_[members[m]].gain = gain[m];
     }
   }
   refresh_images();
   // Receivers: whoever has a particle with a gain among its neighbours.
-  std::vector<std::uint8_t> takes_part(n, 0);
-  for_each_particle(n, [&](std::size_t i) {
-    takes_part[i] = surface_[i].gain != 0 ? 1 : 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i] && takes_part[i] == 0; ++k) {
-      takes_part[i] = surface_[neighbours.index[k]].gain != 0 ? 1 : 0;
+  for_each_particle(among->size(), [&](std::size_t m) {
+    const std::uint32_t i = (*among)[m];
+    takes_part_[i] = surface_[i].gain != 0 ? 1 : 0;
+    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i] && takes_part_[i] == 0; ++k) {
+      takes_part_[i] = surface_[neighbours.index[k]].gain != 0 ? 1 : 0;
     }
   });
-  members_.clear();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (takes_part[i] != 0) {
-      members_.push_back(i);
-    }
-  }
 }
 
 void SurfaceConduction::add(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
-                            const QuinticSpline& kernel, std::vector<double>& power) const {
+                            const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
+                            std::vector<double>& power) const {
   const HeatRecord* all = records.data();
-  for_each_particle(members_.size(), [&](std::size_t m) {
-    const std::uint32_t i = members_[m];
+  for_each_particle(active.size(), [&](std::size_t m) {
+    const std::uint32_t i = active[m];
+    if (takes_part_[i] == 0) {
+      return;
+    }
     const SurfaceRecord& own = surface_[i];
-    const Lane conductivity = all[i].conductivity, temperature = all[i].temperature;
+    const Lane conductivity = all[i].conductivity, temperature = all[i].temperature,
+               awake = all[i].awake;
     Lane sum = 0;
     for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
-      sum += share_of(own, surface_.data(), j, pair) *
-             conduction_pair(conductivity, temperature, gather(all, j, &HeatRecord::conductivity),
-                             gather(all, j, &HeatRecord::temperature),
-                             gather(all, j, &HeatRecord::volume), pair.factor);
+      const Lane exchanged =
+          share_of(own, surface_.data(), j, pair) *
+          conduction_pair(conductivity, temperature, gather(all, j, &HeatRecord::conductivity),
+                          gather(all, j, &HeatRecord::temperature),
+                          gather(all, j, &HeatRecord::volume), pair.factor);
+      sum += where_positive(awake + gather(all, j, &HeatRecord::awake), exchanged, Lane(0.0));
     });
     power[i] += sum_lanes(sum);
   });

@@ -38,20 +38,26 @@ class SurfaceConduction {
   static constexpr double smallest_gain = -0.3, largest_gain = 2;
 
   /// Finds the surface and its gains. To be called whenever the lists are remade.
-  /// @param records as in conduct(); @param kernel whose second lattice moment is exact.
+  /// @param records as in conduct(); @param kernel whose second lattice moment is exact;
+  /// @param among the particles whose surroundings may have changed since the last call with the
+  /// same indices; null: all.
   void update(const std::vector<HeatRecord>& records, const std::vector<Ghost>& ghosts,
-              const NeighbourList& neighbours, const QuinticSpline& kernel);
+              const NeighbourList& neighbours, const QuinticSpline& kernel,
+              const std::vector<std::uint32_t>* among = nullptr);
 
-  /// Adds what the surface conducts beyond conduct(), W m-3.
+  /// Adds what the surface conducts beyond conduct(), W m-3, to the particles in `active`, in pairs
+  /// of which one is awake.
   void add(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
-           const QuinticSpline& kernel, std::vector<double>& power) const;
+           const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
+           std::vector<double>& power) const;
 
   /// Per particle, then ghosts and the void.
   const std::vector<SurfaceRecord>& surface() const { return surface_; }
 
  private:
   std::vector<SurfaceRecord> surface_;
-  std::vector<std::uint32_t> members_;  // on the surface, or with a neighbour on it
+  std::vector<std::uint8_t> outer_;       // on the surface
+  std::vector<std::uint8_t> takes_part_;  // that, or with a neighbour that has a gain
 };
 
 }  // namespace meltproof::solver
