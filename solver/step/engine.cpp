@@ -138,7 +138,9 @@ void Engine::refresh(std::size_t i) {
       conductivity * particles_.volume[i] /
       (particles_.mass[i] * mixture_.smallest_specific_heat_near(temperature, concentration));
   // The liquid part of a mushy particle diffuses, so D rises continuously from the solidus on.
-  diffusivity_[i] = liquid > 0 ? liquid * diffusivity_law_(temperature) : 0;
+  // What was lost exchanges nothing any more.
+  const bool mixes = liquid > 0 && particles_.phase[i] != Phase::lost;
+  diffusivity_[i] = mixes ? liquid * diffusivity_law_(temperature) : 0;
   absorptivity_[i] = mixture_.absorptivity(concentration);
   heat_records_[i].temperature = temperature;
   heat_records_[i].conductivity = conductivity;

@@ -121,6 +121,7 @@ bool Engine::change_phases() {
     if (outside && particles_.phase[i] == Phase::liquid) {
       particles_.phase[i] = Phase::lost;
       particles_.velocity[i] = {};
+      diffusivity_[i] = 0;
       ++lost_;
       changed = true;
     }
@@ -163,6 +164,11 @@ void Engine::rebuild_lists(bool everything) {
   if (everything) {
     sort_in_space(particles_, 3 * kernel_.smoothing_length);
     builds_since_sort_ = 0;
+    // Everybody has a new index: what was kept by the old ones is made afresh.
+    liquid_.clear();
+    for (auto& record : species_records_) {
+      record.diffusivity = 0;
+    }
     for_each_particle(n, [&](std::size_t i) { refresh(i); });
   }
   for (std::size_t i = 0; i < n; ++i) {

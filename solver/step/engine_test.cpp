@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -232,6 +233,82 @@ TEST(Verification, TheSpeciesOperatorChosenBeatsThePlainOne) {
   // sqrt(4Dt) = 2 um at 1 um: 0.3 % against 1.5 %, so only the fourth moment meets the 1 % asked.
   EXPECT_LT(fourth, 0.005);
   EXPECT_GT(second, 0.01);
+}
+
+namespace {
+
+/// A block of melt on a plate, all at one temperature, flowing or about to.
+Engine melt_block(double temperature) {
+  const Mixture mixture = paper_mixture();
+  const double dx = 10e-6, volume = dx * dx * dx;
+  Particles particles;
+  particles.spacing = dx;
+  for (int k = 0; k < 8; ++k) {
+    for (int j = 0; j < 10; ++j) {
+      for (int i = 0; i < 10; ++i) {
+        const double t = k < 4 ? 1500 : temperature;
+        particles.add(static_cast<std::int64_t>(particles.size()),
+                      {(i + 0.5) * dx, (j + 0.5) * dx, (k - 3.5) * dx}, mixture.density(0) * volume,
+                      volume, mixture.enthalpy(t, 0), 0, Origin::plate);
+      }
+    }
+  }
+  Model model;
+  model.conduction = model.species = false;
+  model.flow = FlowSettings{};
+  model.domain.lower = {-1e-3, -1e-3, -40e-6};
+  model.domain.upper = {1e-3, 1e-3, 1e-3};
+  return {std::move(particles), mixture, liquid_metal(), model};
+}
+
+}  // namespace
+
+TEST(Flow, ANumberThatIsNoneNamesParticleAndTerm) {
+  Engine engine = melt_block(2000);
+  const std::size_t n = engine.particles().size();
+  std::vector<Vector> velocity(n);
+  std::vector<double> density(n, engine.mixture().density(0));
+  density[640] = std::numeric_limits<double>::quiet_NaN();
+  engine.set_state(velocity, density);
+  try {
+    engine.step(1e-6);
+    FAIL() << "a density that is no number went unnoticed";
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("particle"), std::string::npos) << text;
+    EXPECT_NE(text.find("continuity"), std::string::npos) << text;
+  }
+}
+
+TEST(Flow, SolidStandsStillAndMeltFreezesOntoIt) {
+  Engine engine = melt_block(2000);
+  std::size_t liquid = 0;
+  for (const Phase phase : engine.particles().phase) {
+    liquid += phase == Phase::liquid ? 1 : 0;
+  }
+  EXPECT_EQ(liquid, 400U);
+  while (engine.time() < 5e-6) {
+    engine.step(5e-6);
+  }
+  const Particles& p = engine.particles();
+  double moved = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto id = static_cast<int>(p.identity[i]);
+    const Vector start{(id % 10 + 0.5) * 10e-6, (id / 10 % 10 + 0.5) * 10e-6,
+                       (id / 100 - 3.5) * 10e-6};
+    const double way = std::hypot(p.position[i][0] - start[0], p.position[i][1] - start[1],
+                                  p.position[i][2] - start[2]);
+    if (p.phase[i] == Phase::solid) {
+      EXPECT_EQ(way, 0);
+      EXPECT_EQ(p.velocity[i], Vector{});
+    } else {
+      moved = std::max(moved, way);
+      EXPECT_GT(p.position[i][2], -2e-6) << "melt within the solid";
+    }
+  }
+  // Surface tension pulls the edges of the block in.
+  EXPECT_GT(moved, 1e-7);
+  EXPECT_EQ(engine.lost(), 0U);
 }
 
 }  // namespace meltproof::solver
