@@ -407,12 +407,16 @@ double Engine::step(double until) {
     advance_species(dt);
   }
   watch.lap(times_.species);
+  old_enthalpy_ = particles_.enthalpy;
+  old_temperature_ = particles_.temperature;
   for_each_particle(n, [&](std::size_t i) {
-    const double old_enthalpy = particles_.enthalpy[i], old_temperature = particles_.temperature[i];
     particles_.enthalpy[i] +=
         dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
     refresh(i);
-    note_phase_times(i, old_enthalpy, old_temperature, dt);
+  });
+  // Apart from the loop above, because a gradient looks at the neighbours' new temperatures.
+  for_each_particle(n, [&](std::size_t i) {
+    note_phase_times(i, old_enthalpy_[i], old_temperature_[i], dt);
   });
   watch.lap(times_.state);
   ledger_.absorbed += dt * beam_.absorbed;

@@ -137,7 +137,7 @@ class Engine {
   std::vector<HeatRecord> heat_records_;
   std::vector<SpeciesRecord> species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
-      half_step_, loss_area_;
+      half_step_, loss_area_, old_enthalpy_, old_temperature_;
   std::vector<std::uint32_t> liquid_, heat_active_;
   double start_temperature_ = 0;  // K, of a domain that begins at one temperature
   StepLimits limits_;
