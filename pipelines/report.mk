@@ -3,20 +3,24 @@
 
 FIGURE_FOLDER := $(WORK)/figures
 LOOK := $(addprefix pipelines/figures/,style.py artifact.py)
-FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig04_powder_and_pool.svg \
-  fig05_length.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg fig10_bare_plate.svg)
+FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg \
+  fig04_powder_and_pool.svg fig05_length.svg fig06_flow.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg \
+  fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg)
 
-$(FIGURE_FOLDER)/fig01_diffusion.svg $(FIGURE_FOLDER)/fig02_conduction.svg: \
+$(FIGURE_FOLDER)/fig01_diffusion.svg $(FIGURE_FOLDER)/fig02_conduction.svg $(FIGURE_FOLDER)/fig03_flow_cases.svg: \
     $(VERIFICATION) pipelines/figures/verification.py
 $(FIGURE_FOLDER)/fig04_powder_and_pool.svg: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 \
     pipelines/figures/sections.py
 $(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED)
+$(FIGURE_FOLDER)/fig06_flow.svg: $(WORK)/track_0wt/run.h5 pipelines/figures/sections.py
 $(FIGURE_FOLDER)/fig07_profiles.svg: $(LINESCANS)
 $(FIGURE_FOLDER)/fig08_history.svg: $(RESULTS)
 $(FIGURE_FOLDER)/fig09_camera.svg: $(WORK)/track_5wt/recording.h5 $(WORK)/track_5wt/thermography/summary.json
 $(FIGURE_FOLDER)/fig10_bare_plate.svg: $(WORK)/track_316L_175W_750/run.h5 \
     $(WORK)/track_316L_175W_750/result.json $(COMPARISON) \
     pipelines/figures/sections.py
+
+$(FIGURE_FOLDER)/fig11_resolution.svg $(FIGURE_FOLDER)/fig12_sensitivity.svg: $(STUDIES)
 
 # What a figure reads is what stands before its script here; the scripts take it in this order.
 $(FIGURE_FOLDER)/%.svg: pipelines/figures/%.py $(LOOK) | packages
@@ -32,10 +36,11 @@ $(CIRCUMSTANCES): always | packages
 REPORT := reports/validation.pdf
 REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)
 
-$(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(RESULTS) $(FILMED) $(CIRCUMSTANCES) \
+$(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(STUDIES) $(RESULTS) $(FILMED) \
+    $(CIRCUMSTANCES) pipelines/figures/track.py \
     $(wildcard reports/template/*) $(wildcard pipelines/report/*.py) pipelines/figures/artifact.py
 	@$(STAGE) 'report' $(PYTHON) pipelines/report/build_report.py --work $(WORK) --figures $(FIGURE_FOLDER) \
-	  --verification $(VERIFICATION) --comparison $(COMPARISON) --circumstances $(CIRCUMSTANCES) \
+	  --verification $(VERIFICATION) --comparison $(COMPARISON) --studies $(STUDIES) --circumstances $(CIRCUMSTANCES) \
 	  --template reports/template --output reports/validation
 
 .PHONY: figures report validate readme-picture

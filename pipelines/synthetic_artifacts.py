@@ -81,6 +81,9 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
             put(file, f"{group}/temperature", temperature, "K")
             put(file, f"{group}/concentration", np.where(origin == 2, 0.8, 0.01) * (additive_mass_fraction > 0))
             put(file, f"{group}/liquid_fraction", (temperature > 1683).astype(float))
+            put(file, f"{group}/phase", (temperature > 1683).astype("u1"))
+            put(file, f"{group}/velocity", np.column_stack([np.cos(x / 30), 0 * y, np.sin(x / 30)])
+                * (temperature > 1683)[:, None], "m s-1")
             put(file, f"{group}/identity", np.arange(len(x), dtype="i8"))
             put(file, f"{group}/origin", origin)
             put(file, f"{group}/melted", ever.astype("u1"))
@@ -88,10 +91,15 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
     with (folder / "history.csv").open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["time [us]", "dt [us]", "pool_length [um]", "pool_width [um]", "pool_depth [um]",
-                         "any_liquid_length [um]", "peak_temperature [K]"])
+                         "any_liquid_length [um]", "peak_temperature [K]", "largest_speed [m/s]", "mean_speed [m/s]"])
         for time in range(0, 1000, 20):
             grown = 1 - math.exp(-time / 300)
-            writer.writerow([time, 1, 250 * grown, 120 * grown, 60 * grown, 260 * grown, 2900])
+            writer.writerow([time, 1, 250 * grown, 120 * grown, 60 * grown, 260 * grown, 2900, 2.5, 0.4])
+    (folder / "input.toml").write_text(
+        'initial_temperature = "293.15 K"\n[materials]\nbase = "data/materials/316L.toml"\n[laser]\npower = "175 W"\n'
+        'speed = "0.375 m s-1"\nexposure = "0.00098 s"\nabsorptivity = -1\n'
+        '[output]\naveraging_window = "0.0002 s"\npool_temperature = "0 K"\n')
+    distances = {"clumped_fraction": 0.002, "smallest_spacings": 0.6, "filled_relative_error": -0.02}
     case = f"track_{100 * additive_mass_fraction:.0f}wt" if powder_layer else "track_316L_175W_750"
     (folder / "result.json").write_text(json.dumps({
         "case": case, "spacing_um": spacing_um, "additive_wt_percent": 100 * additive_mass_fraction,
@@ -99,6 +107,15 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
         "pool_length_sd_um": 9.0, "pool_width_sd_um": 4.0, "pool_depth_sd_um": 3.0, "any_liquid_length_um": 260.0,
         "any_liquid_length_sd_um": 11.0, "pool_length_growth_um_per_ms": 20.0, "fusion_width_um": 118.0,
         "fusion_depth_um": 58.0, "title": "synthetic", "end_time_us": 1200.0, "all_solid_at_end": True,
+        "energy_absorbed_J": 0.07, "energy_evaporated_J": 0.004,
+        "steady_state": {"pool_length": {"verdict": "growing", "steady": False, "limit_um": 252.0, "u_limit_um": 4.0,
+                                         "time_constant_us": 300.0}},
+        "limiters": {"wall_pressure_clipped": 10, "wall_particle_steps": 1000, "curvature_held": 0,
+                     "liquid_particle_steps": 1000},
+        "acceptance": {"pass": True, "lost_particles": 0, "liquid": distances, "ever_melted": distances,
+                       "asked": {"clumped_fraction_below": 0.01, "filled_relative_error_within": 0.05,
+                                 "refilled_mean_height_above_um": -spacing_um},
+                       "refilled_track": {"mean_height_um": -2.0, "deepest_point_um": -20.0}},
         "provenance": PROVENANCE, "energy_relative_error": 1e-12, "species_relative_error": 1e-15,
         "particles": len(x), "steps": 1000, "wall_time_s": 12.0, "revision": "synthetic", "window": "a synthetic window"}))
 
@@ -125,7 +142,8 @@ def verification(path, profiles):
     for name, kind in (("species_stripe_2um", "species_stripe"), ("species_stripe_20um", "species_stripe"),
                        ("species_stripe_as_printed", "species_stripe"), ("conduction_slab", "conduction_slab"),
                        ("conduction_contact", "conduction_contact"), ("stefan_0.1", "stefan"),
-                       ("stefan_0.5", "stefan"), ("stefan_1", "stefan")):
+                       ("stefan_0.5", "stefan"), ("stefan_1", "stefan"), ("couette", "channel"),
+                       ("laplace_drop_3d", "laplace_drop")):
         table = profiles / name / "profile.csv"
         table.parent.mkdir(exist_ok=True)
         with table.open("w", newline="") as file:
@@ -137,7 +155,7 @@ def verification(path, profiles):
                     writer.writerow([spacing, position, exact * (1 + 0.005 * spacing ** 2), exact])
         cases.append({"name": name, "kind": kind, "title": name.replace("_", " ") + " (synthetic)",
                       "reference": "synthetic", "quantity": "synthetic", "error": 0.005, "asked": 0.01, "order": 2.0,
-                      "pass": True, "spacings_um": [1, 2, 4], "errors": [0.005, 0.02, 0.08],
+                      "pass": True, "extra": {"synthetic_extra": 0.25}, "broken": [], "spacings_um": [1, 2, 4], "errors": [0.005, 0.02, 0.08],
                       "profile": {"position": "position [um]", "value": "value [1]"}, "profile_csv": str(table)})
     Path(path).write_text(json.dumps({"cases": cases, "provenance": PROVENANCE}))
 
@@ -181,13 +199,47 @@ def comparison(path):
            "u_val": None, "unit": "um", "verdict": "pending", "declared": "pending", "waits_for": "reference",
            "reason": "synthetic", "finding": "synthetic", "figure": "fig05_length", "source": None,
            "lower": None, "upper": None, "details": {}, "failure": None, "limit": None}
+    row["simulated"] = {"file": "track_316L_175W_750/result.json", "value": "/x"}
     width = dict(row, name="bare_316l_width", title="Synthetic width", S=118.0, D=127.7, E=-9.7, u_val=8.4, u_D=8.4,
                  verdict="agrees", declared="agrees", waits_for=None, quantity="width")
     depth = dict(width, name="bare_316l_depth", title="Synthetic depth", S=20.0, D=58.8, E=-38.8, u_val=17.6,
                  u_D=17.6, verdict="differs", declared="differs", quantity="depth")
+    lost = dict(row, name="lost_track_5wt", title="Synthetic loss", kind="verification", metric="number", S=0, D=None,
+                verdict="agrees", declared="agrees", waits_for=None, quantity="lost particles")
     Path(path).write_text(json.dumps({
-        "profile": "smoke", "rows": [row, width, depth], "failures": [], "statistics": [], "provenance": PROVENANCE,
-        "summary": {"agrees": 1, "differs": 1, "pending": 1, "not computed": 0}}))
+        "profile": "smoke", "rows": [row, width, depth, lost], "failures": [], "statistics": [], "provenance": PROVENANCE,
+        "summary": {"agrees": 2, "differs": 1, "pending": 1, "not computed": 0}}))
+
+
+def studies(path):
+    """A resolution of order 1 and one numerical choice, as meltproof-studies would summarise them."""
+    def run(name, spacing, size, clumped=0.0):
+        return {"name": name, "title": f"synthetic {name}", "spacing_um": spacing, "clumped_fraction": clumped,
+                **{f"{extent}_{part}": number for extent, scale in (("length", 3), ("width", 1), ("depth", 1))
+                   for part, number in (("um", scale * size), ("sd_um", 2.0))},
+                "peak_temperature_K": 3400.0, "largest_speed_m_s": 2.0, "evaporated_share": 0.05, "seconds": 60.0,
+                "revision": "synthetic", "inputs": []}
+
+    def resolved(scale):
+        return {"behaviour": "converges", "spacings_um": [7, 10, 14], "values_um": [scale * v for v in (107, 110, 114)],
+                "order": 1.0, "order_used": 1.0, "extrapolated_um": 100.0 * scale, "u_um": [4.4, 6.2, 8.8],
+                "u_base_um": 6.2, "relative_u": 0.057}
+
+    extents = {"length": 3, "width": 1, "depth": 1}
+    common = {"base": "base", "about": "synthetic", "counted": True, "missing": []}
+    Path(path).write_text(json.dumps({
+        "profile": "desk", "runs": [run("spacing_14", 14, 114), run("base", 10, 110), run("spacing_7", 7, 107),
+                                    run("none", 10, 130, 0.4)],
+        "series": [
+            {"name": "resolution", "title": "Synthetic resolution", "kind": "resolution",
+             "runs": ["spacing_14", "base", "spacing_7"], **common,
+             "quantities": {extent: resolved(scale) for extent, scale in extents.items()}},
+            {"name": "cure", "title": "Synthetic choice", "kind": "numerical", "runs": ["base", "none"], **common,
+             "quantities": {extent: {"u_base_um": 0.0, "relative_u": 0.0, "left_out": ["none"]} for extent in extents}},
+            {"name": "later", "title": "Synthetic later", "kind": "physics", "runs": ["base", "unmade"], **common,
+             "missing": ["unmade"]}],
+        "quantities": {extent: {"relative_u": 0.057, "parts": {"resolution": 0.057, "cure": 0.0}} for extent in extents},
+        "provenance": PROVENANCE}))
 
 
 def everything(root):
@@ -205,4 +257,5 @@ def everything(root):
         linescan(work / "track_5wt" / f"linescan_{direction}.json", direction)
     verification(root / "verification.json", root / "profiles")
     comparison(root / "validation.json")
+    studies(root / "studies.json")
     return work

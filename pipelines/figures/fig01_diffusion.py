@@ -14,9 +14,9 @@ def main():
     arguments.add_argument("--output", required=True, help="the SVG file to write")
     given = arguments.parse_args()
 
-    cases = verification.load_cases(given.verification, ["stripe", "species"])
-    # Narrow to wide, against the order of the names; a case that ends uniform has nothing to show but its error in the table.
-    shown = [case for case in cases if case["order"] is not None][::-1][:2]
+    cases = verification.load_cases(given.verification, ["species_stripe", "species_moving"])
+    # Narrow to wide, against the order of the names; the others have nothing to show but their errors in the table.
+    shown = [case for case in cases if case["name"].endswith("um")][::-1][:2]
     figure, panels = plt.subplots(1, len(shown) + 1, figsize=(style.PAGE_WIDTH, 2.5))
     for axes, case in zip(panels, shown):
         verification.plot_profile(axes, case, given.verification)

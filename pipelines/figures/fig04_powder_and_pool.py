@@ -75,8 +75,7 @@ def main():
                f"Simulated, {100 * bed['additive_mass_fraction']:.3g} wt% AlSi10Mg, particle spacing {spacing:g} um. "
                f"The bed holds {len(radius)} spheres (median diameter {bed['d50'] / MICRON:.3g} um, packing "
                f"density {bed['packing_density']:.3f}, mean coordination {bed['mean_coordination']:.2f}). The "
-               f"highest concentration in section d is {top:.3g} wt%. Particles do not move in this version: "
-               "the molten grains keep their places.")
+               f"highest concentration in section d is {top:.3g} wt%.")
 
 
 style.run(main)

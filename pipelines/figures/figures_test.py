@@ -9,19 +9,23 @@ import unittest
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+sys.path[:0] = [str(HERE.parent), str(HERE)]
 import synthetic_artifacts  # noqa: E402
 
 TRACKS = ("0wt", "1wt", "5wt")
 INPUTS = {
     "fig01_diffusion": ["verification.json"],
     "fig02_conduction": ["verification.json"],
+    "fig03_flow_cases": ["verification.json"],
     "fig04_powder_and_pool": ["work/powder_5wt/powder.h5", "work/track_5wt/run.h5"],
     "fig05_length": [f"work/track_{track}/result.json" for track in TRACKS]
                     + [f"work/track_{track}/thermography/summary.json" for track in TRACKS],
+    "fig06_flow": ["work/track_0wt/run.h5"],
     "fig07_profiles": ["work/track_5wt/linescan_depth.json", "work/track_5wt/linescan_lateral.json"],
     "fig08_history": [f"work/track_{track}/result.json" for track in TRACKS],
     "fig09_camera": ["work/track_5wt/recording.h5", "work/track_5wt/thermography/summary.json"],
+    "fig11_resolution": ["studies.json"],
+    "fig12_sensitivity": ["studies.json"],
     "fig10_bare_plate": ["work/track_316L_175W_750/run.h5", "work/track_316L_175W_750/result.json", "validation.json"],
 }
 
@@ -80,6 +84,34 @@ class Figures(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no grain melted", output.read_text())
         self.assertIn("no grain melted", output.with_suffix(".json").read_text())
+
+    def test_studies_that_are_not_run_yet_are_said_to_be_missing(self):
+        empty = self.root / "no_studies.json"
+        empty.write_text('{"runs": [], "series": [{"kind": "resolution", "missing": ["a"], "base": "a", "runs": ["a"]}]}')
+        for name in ("fig11_resolution", "fig12_sensitivity"):
+            output = self.root / f"none_{name}.svg"
+            done = draw(name, [empty], output)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("not run yet", output.read_text())
+
+    def test_a_section_fills_a_lattice_and_leaves_a_gap(self):
+        import h5py
+        import numpy as np
+        import sections
+        path = self.root / "gap.h5"
+        with h5py.File(path, "w") as file:
+            grid = np.stack(np.meshgrid(*[np.arange(8) * 1e-5] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+            hole = np.all(np.abs(grid - 3.5e-5) < 1.1e-5, axis=1)
+            position = grid[~hole] - 3.5e-5
+            synthetic_artifacts.put(file, "snapshots/0000/position", position, "m")
+            synthetic_artifacts.put(file, "snapshots/0000/temperature", 300 + 1e6 * position[:, 0], "K")
+            synthetic_artifacts.put(file, "spacing", 1e-5, "m")
+            values, extent, first, second = sections.raster(file, "snapshots/0000", "temperature", "y")
+        self.assertEqual((first, second, values.shape), ("x", "z", (32, 32)))
+        self.assertTrue(np.isnan(values[15:17, 15:17]).all())
+        self.assertFalse(np.isnan(values[:8, :]).any())
+        self.assertAlmostEqual(values[4, 16] - values[4, 12], 10, delta=1)  # 4 pixels are one spacing
+        self.assertAlmostEqual(extent[1] - extent[0], 80)
 
     def test_a_wrong_kind_of_artifact_is_refused(self):
         done = draw("fig04_powder_and_pool", [self.root / "work/track_5wt/run.h5"] * 2, self.root / "x.svg")

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Plane sections through a run, each particle drawn as the square that it stands for."""
+"""Plane sections through a run: particles as the squares that they stand for, fields as pixels."""
 
 import artifact
 import numpy as np
 import style
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
-from matplotlib.tri import Triangulation
 
 MICRON = 1e-6
 AXES = {"x": 0, "y": 1, "z": 2}
@@ -58,23 +57,54 @@ def plot_origin(axes, run, snapshot, normal, looks):
     frame(axes, horizontal, vertical, side, first, second)
 
 
+def raster(run, snapshot, field, normal, at=0.0, scale=1.0):
+    """A field in a plane as pixels of a quarter of the spacing: the mean of the particles within 1.5 spacings, weighted by
+    (1 - (r / 1.5 spacings)^2)^2; NaN where the nearest is further than 0.87 spacings, half the diagonal of a lattice
+    cell, so that a lattice is filled and a gap is not. Returns values (rows from below), the extent in um, the axes."""
+    position = artifact.data(run, f"{snapshot}/position") / MICRON
+    side = artifact.scalar(run, "spacing") / MICRON
+    first, second = (axis for axis in "xyz" if axis != normal)
+    reach, pixel = 1.5 * side, 0.25 * side
+    across = position[:, AXES[normal]] - at / MICRON
+    near = np.abs(across) < reach
+    if not near.any():
+        raise artifact.MissingArtifact(f"{run.filename} holds no particle near the plane {normal} = {at / MICRON:g} um.")
+    across, u, v = across[near], position[near, AXES[first]], position[near, AXES[second]]
+    value = scale * artifact.data(run, f"{snapshot}/{field}")[near].astype(float)
+    left, below = u.min() - side / 2, v.min() - side / 2
+    columns, rows = (int(round((top + side / 2 - start) / pixel)) for top, start in ((u.max(), left), (v.max(), below)))
+    weights, sums = np.zeros(rows * columns), np.zeros(rows * columns)
+    nearest = np.full(rows * columns, np.inf)
+    column, row = np.floor((u - left) / pixel).astype(int), np.floor((v - below) / pixel).astype(int)
+    steps = range(-int(reach / pixel) - 1, int(reach / pixel) + 2)
+    for dx in steps:
+        for dy in steps:
+            i, j = column + dx, row + dy
+            square = ((left + (i + 0.5) * pixel - u) ** 2 + (below + (j + 0.5) * pixel - v) ** 2 + across**2) / reach**2
+            used = (square < 1) & (i >= 0) & (i < columns) & (j >= 0) & (j < rows)
+            place = j[used] * columns + i[used]
+            weight = (1 - square[used]) ** 2
+            weights += np.bincount(place, weight, minlength=weights.size)
+            sums += np.bincount(place, weight * value[used], minlength=sums.size)
+            np.minimum.at(nearest, place, square[used])
+    filled = nearest <= (0.87 * side / reach) ** 2
+    values = np.where(filled, sums / np.where(filled, weights, 1), np.nan).reshape(rows, columns)
+    return values, (left, left + columns * pixel, below, below + rows * pixel), first, second
+
+
 def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None, scale=1.0, at=0.0):
     """One field in a section, its colours explained in `bar_axes`, with the contour line of one value; returns
     the largest value shown."""
-    chosen, horizontal, vertical, first, second = slice_of(run, snapshot, normal, at)
-    side = artifact.scalar(run, "spacing") / MICRON
-    values = scale * artifact.data(run, f"{snapshot}/{field}")[chosen]
-    colours = PolyCollection(squares(horizontal, vertical, side), array=values, cmap=style.FIELD_COLOURS,
-                             norm=Normalize(values.min(), max(values.max(), values.min() + 1e-9)),
-                             edgecolor="face", linewidth=0.2)
-    axes.add_collection(colours)
-    frame(axes, horizontal, vertical, side, first, second)
-    if contour is not None and values.min() < contour < values.max():
-        grid = Triangulation(horizontal, vertical)
-        corners = np.stack([horizontal[grid.triangles], vertical[grid.triangles]], axis=2)
-        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-        grid.set_mask(longest > 2.0 * side)  # no line across gaps between grains
-        axes.tricontour(grid, values, levels=[contour], colors="white", linewidths=1.4)
-        axes.tricontour(grid, values, levels=[contour], colors="black", linewidths=0.5, linestyles="--")
+    values, extent, first, second = raster(run, snapshot, field, normal, at, scale)
+    lowest, highest = np.nanmin(values), np.nanmax(values)
+    colours = axes.imshow(values, extent=extent, origin="lower", cmap=style.FIELD_COLOURS, interpolation="nearest",
+                          norm=Normalize(lowest, max(highest, lowest + 1e-9)))
+    names = {"x": "scan direction x [um]", "y": "y [um]", "z": "height z [um]"}
+    axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel=names[first], ylabel=names[second])
+    axes.grid(False)
+    if contour is not None and lowest < contour < highest:
+        line = {"levels": [contour], "extent": extent, "origin": "lower"}
+        axes.contour(values, colors="white", linewidths=1.4, **line)
+        axes.contour(values, colors="black", linewidths=0.5, linestyles="--", **line)
     axes.figure.colorbar(colours, cax=bar_axes, label=label)
-    return float(values.max())
+    return float(highest)

@@ -9,10 +9,10 @@ import style
 from artifact import MissingArtifact, column, read_json, read_table, value
 
 
-def load_cases(path, wanted):
-    """The cases of verification.json whose name holds one of the words in `wanted`."""
+def load_cases(path, wanted, key="name"):
+    """The cases of verification.json whose name, or other key, holds one of the words in `wanted`."""
     cases = [case for case in value(read_json(path), "cases", path)
-             if any(word in value(case, "name", path) for word in wanted)]
+             if any(word in value(case, key, path) for word in wanted)]
     if not cases:
         raise MissingArtifact(f"{path} holds no case named like {' or '.join(wanted)}; run `make verify`.")
     return cases
@@ -23,6 +23,17 @@ def profile_path(case, verification):
     named = Path(case["profile_csv"])
     beside = Path(verification).parent / named
     return named if named.is_file() or not beside.is_file() else beside
+
+
+def has_profile(case, verification):
+    """Whether a case left a profile of at least three points: some are a single number."""
+    path = profile_path(case, verification)
+    return path.is_file() and sum(1 for _ in path.open(encoding="utf-8")) > 3
+
+
+def of_spacing(micrometres):
+    """A spacing in um, or in m where a case is stated in metres."""
+    return f"{micrometres:g} um" if micrometres < 1000 else f"{1e-6 * micrometres:.3g} m"
 
 
 def plot_profile(axes, case, verification):
@@ -40,7 +51,7 @@ def plot_profile(axes, case, verification):
         every = max(1, int(chosen.sum()) // 40)
         axes.plot(position[chosen][::every], computed[chosen][::every], linestyle="none", marker=look["marker"],
                   color=look["color"], fillstyle="none", markersize=3.2, markeredgewidth=0.7,
-                  label=f"SPH, {size:g} um", zorder=4)
+                  label=f"SPH, {of_spacing(size)}", zorder=4)
     axes.set_xlabel(case["profile"]["position"])
     axes.set_ylabel(case["profile"]["value"])
     axes.set_title(textwrap.fill(case["title"], 34), fontsize=7)
@@ -58,9 +69,10 @@ def plot_convergence(axes, cases):
         axes.plot([spacings.min() * 0.87, spacings.min() * 1.15], [100 * case["asked"]] * 2,
                   color=look["color"], linewidth=2.2)
     ticks = sorted({spacing for case in cases for spacing in case["spacings_um"]})
-    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    scale, unit = (1e-6, "m") if ticks and ticks[0] >= 1000 else (1, "um")
+    axes.set_xticks(ticks, [f"{scale * tick:.3g}" for tick in ticks], rotation=45 if len(ticks) > 6 else 0)
     axes.minorticks_off()
-    axes.set_xlabel("particle spacing [um]")
+    axes.set_xlabel(f"particle spacing [{unit}]")
     axes.set_ylabel("relative error [%]")
     axes.set_title("Error against spacing", fontsize=7)
     axes.legend(loc="best", fontsize=6)
@@ -73,6 +85,6 @@ def caption_sentences(cases):
         order = f", observed order {case['order']:.2f}" if case.get("order") is not None else ""
         finest = min(case["spacings_um"])
         verdict = "met" if case["pass"] else "NOT met"
-        sentences.append(f"{case['title']}: error {100 * case['error']:.2g} % at {finest:g} um spacing "
+        sentences.append(f"{case['title']}: error {100 * case['error']:.2g} % at {of_spacing(finest)} spacing "
                          f"(asked {100 * case['asked']:.2g} %, {verdict}){order}.")
     return " ".join(sentences)

@@ -20,6 +20,8 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "figures"))
 from artifact import MissingArtifact, existing, open_artifact, read_json, scalar, text, value  # noqa: E402
 from errata_numbers import numbers  # noqa: E402
+from study_table import read_studies  # noqa: E402
+from track_table import describe, read_tracks  # noqa: E402
 
 
 def fixed(number, digits):
@@ -35,7 +37,23 @@ def short(number):
 
 
 def percent_number(share):
-    return f"{100 * share:.2g}"
+    return "–" if share is None else f"{100 * share:.2g}"
+
+
+def signed_percent(share):
+    return "–" if share is None else f"{100 * share:+.1f} %"
+
+
+def of_spacing(micrometres):
+    """A spacing in um, or in m where a case is stated in metres."""
+    return f"{micrometres:g} um" if micrometres < 1000 else f"{1e-6 * micrometres:.3g} m"
+
+
+def extra_text(name, number):
+    """A further result of a case in words: `parasitic_capillary_number` 0.0123."""
+    if isinstance(number, bool) or not isinstance(number, (int, float)):
+        return f"{name.replace('_', ' ')}: {number}"
+    return f"{name.replace('_', ' ')} {number:.3g}"
 
 
 def duration(seconds):
@@ -74,22 +92,6 @@ def embedded_svg(figure):
     return Markup(f'<img alt="{Markup.escape(figure["title"])}" src="data:image/svg+xml;base64,{data}">')
 
 
-def read_tracks(work):
-    """result.json of every track, with the length that the thermography program saw."""
-    tracks = []
-    for path in sorted(Path(work).glob("track_*/result.json")):
-        track = read_json(path)
-        track["path"] = path
-        film = path.parent / "thermography" / "summary.json"
-        track["filmed"] = read_json(film).get("length_um") if film.is_file() else None
-        for key in ("title", "window", "pool_length_um", "energy_relative_error", "species_relative_error"):
-            value(track, key, path)
-        tracks.append(track)
-    if not tracks:
-        raise MissingArtifact(f"{work} holds no track_*/result.json; `make validate` makes them.")
-    return tracks
-
-
 def provenance_of_hdf5(path):
     """The provenance of an HDF5 artifact in the form of that of a JSON result."""
     with open_artifact(path, "") as file:
@@ -101,12 +103,12 @@ def provenance_of_hdf5(path):
                 "wall_time_s": scalar(file, "provenance/wall_time")}
 
 
-def collect_provenance(work, verification, comparison):
+def collect_provenance(work, verification, studies, comparison):
     """One line per artifact, every input file with its checksum, and the libraries."""
     files = [Path(verification), *sorted(Path(work).glob("powder_*/powder.h5")),
              *sorted(Path(work).glob("track_*/result.json")),
              *sorted(Path(work).glob("track_*/thermography/summary.json")),
-             *sorted(Path(work).glob("track_*/linescan_*.json")), Path(comparison)]
+             *sorted(Path(work).glob("track_*/linescan_*.json")), Path(studies), Path(comparison)]
     artifacts, inputs, libraries = [], {}, {}
     for path in files:
         record = read_json(path) if path.suffix == ".json" else {"provenance": provenance_of_hdf5(path)}
@@ -153,12 +155,16 @@ def report_facts(given):
     """Everything that the template names, but for the pictures."""
     cases = value(read_json(given.verification), "cases", given.verification)
     for case in cases:
-        case["pairs"] = [(f"{s:g}", e) for s, e in zip(case["spacings_um"], case["errors"])]
+        case["pairs"] = [(of_spacing(s), e) for s, e in zip(case["spacings_um"], case["errors"])]
+        case["extras"] = [extra_text(name, number) for name, number in sorted((case.get("extra") or {}).items())]
     comparison = read_json(given.comparison)
     rows = value(comparison, "rows", given.comparison)
     comparisons, measured, pending = sort_rows(rows)
-    tracks = read_tracks(given.work)
-    artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.comparison)
+    root = HERE.parent.parent
+    tracks = [describe(track, rows, root) for track in read_tracks(given.work)]
+    made_by = sorted({track["revision"] for track in tracks})
+    studies = read_studies(given.studies, made_by[-1] if len(made_by) == 1 else None, root)
+    artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.studies, given.comparison)
     facts = read_json(given.circumstances)
     revisions = sorted({made["revision"] for made in artifacts})
     names = {**libraries, **facts["python"]}
@@ -166,6 +172,8 @@ def report_facts(given):
         "facts": facts, "cases": cases, "passed": [c for c in cases if c["pass"]],
         "missed": [c for c in cases if not c["pass"]], "comparisons": comparisons, "measured": measured,
         "pending": pending, "failures": comparison.get("failures", []), "tracks": tracks,
+        "studies": studies, "balances": [row for row in rows if row["kind"] == "verification"
+                                         and "file" in (row.get("simulated") or {})],
         "worst_energy": max(track["energy_relative_error"] for track in tracks),
         "worst_species": max(track["species_relative_error"] for track in tracks),
         "errata": fill_errata(given.template), "artifacts": artifacts, "inputs": inputs,
@@ -178,6 +186,7 @@ def render(template, facts, figures, picture):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(template), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters.update(fixed=fixed, scientific=scientific, short=short, percent_number=percent_number,
+                               signed_percent=signed_percent, duration=duration,
                                percent=lambda share: f"{percent_number(share)} %")
     shown = [{**figure, "picture": picture(figure)} for figure in figures]
     style = Markup(existing(Path(template) / "report.css").read_text(encoding="utf-8"))
@@ -197,6 +206,7 @@ def main():
     arguments.add_argument("--figures", required=True, help="folder of the figures")
     arguments.add_argument("--verification", required=True, help="verification.json")
     arguments.add_argument("--comparison", required=True, help="validation.json")
+    arguments.add_argument("--studies", required=True, help="studies.json")
     arguments.add_argument("--circumstances", required=True, help="circumstances.json")
     arguments.add_argument("--template", required=True, help="folder with report.html, report.css, errata.toml")
     arguments.add_argument("--output", required=True, help="path without suffix; .html and .pdf are written")

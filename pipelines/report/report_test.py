@@ -14,6 +14,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 import errata_numbers  # noqa: E402
+import rosenthal  # noqa: E402
 import synthetic_artifacts  # noqa: E402
 
 # What an earlier, independent calculation of the same contradictions gave, and its last digit.
@@ -47,6 +48,30 @@ class Errata(unittest.TestCase):
         self.assertEqual(used, set(PUBLISHED))
 
 
+class Rosenthal(unittest.TestCase):
+    def test_a_slow_source_makes_a_half_sphere(self):
+        length, width, depth = rosenthal.pool(100, 0.5, 1e-9, 25, 5e-6, 1000)
+        radius = 0.5 * 100 / (2 * 3.141592653589793 * 25 * 1000)
+        for extent, expected in ((length, 2 * radius), (width, 2 * radius), (depth, radius)):
+            self.assertAlmostEqual(extent, expected, delta=1e-3 * radius)
+
+    def test_the_tail_does_not_depend_on_the_speed_and_a_fast_pool_is_as_deep_as_its_limit(self):
+        strength = 0.4 * 175 / (2 * 3.141592653589793 * 30 * 1400)
+        length, width, depth = rosenthal.pool(175, 0.4, 50.0, 30, 5e-6, 1400)
+        self.assertAlmostEqual(length, strength, delta=0.01 * strength)
+        # Far behind a fast source R + x = r^2 / (2 abs(x)): r^2 = (4 alpha abs(x) / v) ln(strength / abs(x)), largest at
+        # abs(x) = strength / e.
+        self.assertAlmostEqual(depth, (4 * 5e-6 * strength / (2.718281828 * 50.0)) ** 0.5, delta=0.03 * depth)
+        self.assertAlmostEqual(width, 2 * depth)
+
+    def test_constants_come_from_the_material(self):
+        known = rosenthal.of_track({"initial_temperature": "293.15 K", "materials": {"base": "data/materials/316L.toml"},
+                                    "laser": {"power": "175 W", "speed": "0.375 m s-1", "absorptivity": -1},
+                                    "output": {}}, ROOT)
+        self.assertAlmostEqual(known["k_W_m_K"], 9.59 + 0.0141 * 1633)
+        self.assertEqual(known["absorptivity"], 0.4)
+
+
 class Report(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -68,7 +93,7 @@ class Report(unittest.TestCase):
 
     def build(self, output, **changed):
         places = {"work": "work", "figures": "figures", "verification": "verification.json",
-                  "comparison": "validation.json", "circumstances": "circumstances.json"}
+                  "comparison": "validation.json", "studies": "studies.json", "circumstances": "circumstances.json"}
         places.update(changed)
         options = [part for name, place in places.items() for part in (f"--{name}", self.root / place)]
         return run(HERE / "build_report.py", *options, "--template", ROOT / "reports/template", "--output",
@@ -86,7 +111,9 @@ class Report(unittest.TestCase):
     def test_the_page_says_what_agrees_differs_and_is_pending_and_loads_nothing(self):
         self.assertEqual(self.build("page").returncode, 0)
         page = (self.root / "page.html").read_text(encoding="utf-8")
-        for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "8 of 8 cases", "Figure 2."):
+        for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "10 of 10 cases", "Figure 2.",
+                      "growing; tends to 252", "synthetic extra 0.25", "Synthetic resolution", "not run yet:\nunmade",
+                      "synthetic none", "length 5.7 %"):
             self.assertIn(words, page)
         self.assertFalse(re.findall(r'(?:src|href)="(?!#|data:)', page))
         names = re.findall(r'\bid="([^"]+)"', page)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The report's tables of studies, from studies.json of meltproof-studies and the committed results behind it."""
+
+import hashlib
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
+from artifact import read_json, value  # noqa: E402
+
+EXTENTS = ("length", "width", "depth")
+
+
+def is_stale(run, revision, root):
+    """Whether the code, or an input that the run read, has changed since."""
+    if run["revision"] != revision:
+        return True
+    for entry in run["inputs"]:
+        path = Path(root) / entry["path"]
+        if path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() != entry["sha256"]:
+            return True
+    return False
+
+
+def resolution_rows(entry):
+    """One row per extent of a resolution: values from coarse to fine, behaviour, order, limit, uncertainty."""
+    rows = []
+    for extent in EXTENTS:
+        found = entry["quantities"][extent]
+        order = sorted(zip(found["spacings_um"], found["values_um"]), reverse=True)
+        rows.append({"extent": extent, "values": order, "behaviour": found["behaviour"], "order": found["order"],
+                     "extrapolated_um": found["extrapolated_um"], "u_base_um": found["u_base_um"],
+                     "relative_u": found["relative_u"]})
+    return rows
+
+
+def read_studies(path, revision, root):
+    """Resolutions, tables of sensitivity, and the shares of u_num, for the template.
+
+    `revision` is the one that made the tracks of this report; a run of another one is marked stale."""
+    summary = read_json(path)
+    by_name = {run["name"]: {**run, "stale": is_stale(run, revision, root)} for run in value(summary, "runs", path)}
+    resolutions, tables, missing = [], [], []
+    for entry in value(summary, "series", path):
+        missing += [name for name in entry["missing"] if name not in missing]
+        runs = [by_name[name] for name in entry["runs"] if name in by_name]
+        if entry["kind"] == "resolution":
+            if not entry["missing"]:
+                resolutions.append({**entry, "rows": resolution_rows(entry), "made": runs,
+                                    "stale": any(run["stale"] for run in runs)})
+        elif len(runs) > 1 and entry["base"] in by_name:
+            base = by_name[entry["base"]]
+            changed = [{**run, "is_base": run["name"] == entry["base"],
+                        **{f"{extent}_change": run[f"{extent}_um"] / base[f"{extent}_um"] - 1 if base[f"{extent}_um"]
+                           else None for extent in EXTENTS}} for run in runs]
+            tables.append({**entry, "made": changed})
+    return {"resolutions": resolutions, "tables": tables, "missing": missing, "runs": list(by_name.values()),
+            "quantities": value(summary, "quantities", path),
+            "stale": [run["name"] for run in by_name.values() if run["stale"]]}
