@@ -115,7 +115,7 @@ TEST(MomentumPair, TurnsALinearPressureIntoItsGradient) {
   const QuinticSpline kernel = lattice_kernel();
   const double density = 3;
   const auto state = [&](const Components<2, double>& at) {
-    return FlowState<2, double>{{}, {}, cell, density, 7 + 2 * at[0] - 5 * at[1], 0};
+    return MomentumState<2, double>{{}, {}, cell, density, 7 + 2 * at[0] - 5 * at[1], 0};
   };
   MomentumSums<2, double> sums;
   around_origin(spacing, [&](const Components<2, double>& at) {
@@ -133,7 +133,7 @@ TEST(MomentumPair, TurnsAParabolaOfSpeedIntoItsLaplacian) {
   const QuinticSpline kernel = lattice_kernel();
   const double viscosity = 0.7;
   const auto state = [&](const Components<2, double>& at) {
-    return FlowState<2, double>{{at[1] * at[1], 3 * at[0]}, {}, cell, 1, 0, viscosity};
+    return MomentumState<2, double>{{at[1] * at[1], 3 * at[0]}, {}, cell, 1, 0, viscosity};
   };
   MomentumSums<2, double> sums;
   around_origin(spacing, [&](const Components<2, double>& at) {
@@ -149,7 +149,7 @@ TEST(MomentumPair, CarriesTheMomentumThatTheTransportVelocityLeavesBehind) {
   const QuinticSpline kernel = lattice_kernel();
   const double density = 3;
   const auto state = [&](const Components<2, double>& at) {
-    return FlowState<2, double>{{at[0], 0}, {4, 0}, cell, density, 0, 0};
+    return MomentumState<2, double>{{at[0], 0}, {4, 0}, cell, density, 0, 0};
   };
   MomentumSums<2, double> sums;
   around_origin(spacing, [&](const Components<2, double>& at) {

@@ -31,7 +31,7 @@ struct alignas(64) FlowRecord {
 
 /// The same as numbers of one kind.
 template <int D, class T>
-struct FlowState {
+struct MomentumState {
   Components<D, T> velocity, transport;
   T volume, density, pressure, viscosity;
 };
@@ -48,8 +48,8 @@ struct MomentumSums {
 /// velocity. Antisymmetric in the pair. (Adami, Hu & Adams 2013, Eqs. 8 and 13)
 template <int D, class T>
 void momentum_pair(MomentumSums<D, T>& sums, const PairGeometry<D, T>& pair,
-                   const QuinticSpline& kernel, const FlowState<D, T>& i,
-                   const FlowState<D, T>& j) {
+                   const QuinticSpline& kernel, const MomentumState<D, T>& i,
+                   const MomentumState<D, T>& j) {
   const T volumes = i.volume * i.volume + j.volume * j.volume;
   const T gradient = volumes * pair.gradient(kernel);
   const T pressure = pressure_pair(i.pressure, i.density, j.pressure, j.density);

@@ -156,16 +156,16 @@ void ClosedFlow::sum_forces() {
       return;
     }
     const FlowRecord& own = all[i];
-    const FlowState<D, Lane> state_i{spread<D>(own, FlowRecord::velocity()),
-                                     spread<D>(own, FlowRecord::transport()),
-                                     own.volume,
-                                     own.density,
-                                     own.pressure,
-                                     own.viscosity};
+    const MomentumState<D, Lane> state_i{spread<D>(own, FlowRecord::velocity()),
+                                         spread<D>(own, FlowRecord::transport()),
+                                         own.volume,
+                                         own.density,
+                                         own.pressure,
+                                         own.viscosity};
     MomentumSums<D, Lane> sums;
     for_each_group<D>(
         neighbours_, i, all, [&](const PairGeometry<D, Lane>& pair, const std::uint32_t* j) {
-          const FlowState<D, Lane> state_j{
+          const MomentumState<D, Lane> state_j{
               gather<D>(all, j, FlowRecord::velocity()), gather<D>(all, j, FlowRecord::transport()),
               gather(all, j, &FlowRecord::volume),       gather(all, j, &FlowRecord::density),
               gather(all, j, &FlowRecord::pressure),     gather(all, j, &FlowRecord::viscosity)};
