@@ -8,13 +8,14 @@ SPACING_paper := 2 um
 SPACING := $(SPACING_$(PROFILE))
 
 POWDER_TRACKS := 0wt 1wt 5wt
-BARE_TRACKS := 316L_175W_750 ammt_a cbm_a
+# CBM-A, 4 ms long, alone takes longer than the rest of the smoke profile together.
+BARE_TRACKS := 316L_175W_750 ammt_a $(if $(filter smoke,$(PROFILE)),,cbm_a)
 TRACKS := $(POWDER_TRACKS) $(BARE_TRACKS)
 MATERIALS := $(wildcard data/materials/*.toml)
 
 RESULTS := $(TRACKS:%=$(WORK)/track_%/result.json)
 FILMED := $(POWDER_TRACKS:%=$(WORK)/track_%/thermography/summary.json)
-COOLING := $(WORK)/track_cbm_a/cooling_rate.json
+COOLING := $(patsubst %,$(WORK)/track_%/cooling_rate.json,$(filter cbm_a,$(BARE_TRACKS)))
 LINESCANS := $(WORK)/track_5wt/linescan_depth.json $(WORK)/track_5wt/linescan_lateral.json
 COMPARISON := reports/validation.json
 

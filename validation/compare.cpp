@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
                         experiments.empty() ? (base / "../data/experiments").lexically_normal()
                                             : fs::path(experiments),
                         studies};
-    const auto rows = run_table(table, places);
+    const auto rows = run_table(table, places, profile);
 
     std::set<fs::path> read = {table_path};
     if (fs::is_regular_file(places.studies)) {

@@ -172,6 +172,33 @@ TEST_F(Results, EveryVerificationCaseHasARowWithoutBeingTyped) {
   EXPECT_NE(results[4].failure.find("cavity"), std::string::npos);
 }
 
+TEST_F(Results, AProfileMayBeKnownToGiveSomethingElse) {
+  ComparisonTable table;
+  Row row = error_row();
+  row.simulated = {.file = "track_a/result.json", .value = "/e"};
+  table.rows.push_back(row);
+  Row other = row;
+  other.name = "other";
+  other.simulated.file = "track_b/result.json";
+  table.rows.push_back(other);
+  table.exceptions.push_back(
+      {.profile = "smoke", .track = "track_a", .verdict = "left out", .reason = "too long"});
+  table.exceptions.push_back(
+      {.profile = "smoke", .rows = {"other"}, .verdict = "differs", .reason = "too coarse"});
+  fs::create_directories(folder_ / "desk/track_b");
+  put("desk/track_b/result.json", {{"e", 0.5}});
+  const auto smoke = run_table(table, places_, "smoke");
+  EXPECT_EQ(smoke[0].verdict, "pending");
+  EXPECT_EQ(smoke[0].failure, "");
+  EXPECT_EQ(smoke[1].verdict, "differs");
+  EXPECT_EQ(smoke[1].failure, "");
+  const auto desk = run_table(table, places_, "desk");
+  EXPECT_NE(desk[0].failure, "");
+  EXPECT_NE(desk[1].failure, "");
+  table.exceptions.back().rows = {"nobody"};
+  EXPECT_THROW(run_table(table, places_, "smoke"), InputError);
+}
+
 TEST_F(Results, AnErrorCountsBySize) {
   Row row = error_row();
   row.simulated = {.file = "a.json", .value = "/e"};

@@ -153,13 +153,43 @@ RowResult run_row(const Row& row, const Places& places) {
   return result;
 }
 
-std::vector<RowResult> run_table(const ComparisonTable& table, const Places& places) {
+std::vector<RowResult> run_table(const ComparisonTable& table, const Places& places,
+                                 const std::string& profile) {
   std::vector<RowResult> results;
   const json cases = std::filesystem::is_regular_file(places.verification)
                          ? read_json(places.verification)
                          : json::object();
-  for (const auto& row : expand(table, cases)) {
+  std::vector<bool> used(table.exceptions.size(), false);
+  for (auto& row : expand(table, cases)) {
+    const Exception* exception = nullptr;
+    for (std::size_t i = 0; i < table.exceptions.size(); ++i) {
+      if (table.exceptions[i].profile == profile && table.exceptions[i].is_about(row)) {
+        exception = &table.exceptions[i];
+        used[i] = true;
+      }
+    }
+    if (exception != nullptr && exception->verdict == "left out") {
+      RowResult result;
+      result.row = row;
+      result.row.reason = exception->reason;
+      result.verdict = "pending";
+      result.finding = fmt::format("not made in the profile {}", profile);
+      results.push_back(std::move(result));
+      continue;
+    }
+    if (exception != nullptr) {
+      row.verdict = exception->verdict;
+      row.reason = exception->reason;
+      row.waits_for.clear();
+    }
     results.push_back(run_row(row, places));
+  }
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (table.exceptions[i].profile == profile && !used[i]) {
+      throw InputError(fmt::format(
+          "an exception of the profile {} (\"{}\") is about no row: correct its rows or track.",
+          profile, table.exceptions[i].reason));
+    }
   }
   return results;
 }

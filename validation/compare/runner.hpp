@@ -28,7 +28,10 @@ struct RowResult {
 /// whose verdict is not the declared one fails. Throws nothing for a row's own faults.
 RowResult run_row(const Row& row, const Places& places);
 
-std::vector<RowResult> run_table(const ComparisonTable& table, const Places& places);
+/// All rows, those that stand for several written out, with the exceptions of a profile.
+/// @throws InputError for an exception that is about no row.
+std::vector<RowResult> run_table(const ComparisonTable& table, const Places& places,
+                                 const std::string& profile = "");
 
 /// Bias and scatter of ln(S/D) for each quantity with at least two rows that have both numbers.
 nlohmann::json statistics(const std::vector<RowResult>& results);

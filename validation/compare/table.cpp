@@ -109,13 +109,42 @@ InputTable row_table(Row& row) {
   return table;
 }
 
+InputTable exception_table(Exception& e) {
+  InputTable table("exception", "Rows that are otherwise in one profile.");
+  table
+      .text(e.profile, {.name = "profile",
+                        .about = "In which profile.",
+                        .required = true,
+                        .choices = {"smoke", "desk", "paper"}})
+      .text(e.track, {.name = "track", .about = "Rows that read a file of this folder."})
+      .texts(e.rows, {.name = "rows", .about = "Rows by name."})
+      .text(e.verdict, {.name = "verdict",
+                        .about = "What these rows are known to give there.",
+                        .required = true,
+                        .choices = {"agrees", "differs", "left out"}})
+      .text(e.reason, {.name = "reason", .about = "Why.", .required = true});
+  return table;
+}
+
 }  // namespace
+
+bool Exception::is_about(const Row& row) const {
+  if (std::find(rows.begin(), rows.end(), row.name) != rows.end()) {
+    return true;
+  }
+  const auto reads = [&](const std::string& file) { return file.starts_with(track + "/"); };
+  return !track.empty() &&
+         (reads(row.simulated.file) ||
+          std::any_of(row.simulated.files.begin(), row.simulated.files.end(), reads));
+}
 
 Input comparison_input(ComparisonTable& table) {
   InputTable root("The comparison table", "One row is one comparison.");
   root.tables(
       "row", "The comparisons, in the order of the report.",
       [&table](std::size_t) { return row_table(table.rows.emplace_back()); }, true);
+  root.tables("exception", "What is known to be otherwise in one profile.",
+              [&table](std::size_t) { return exception_table(table.exceptions.emplace_back()); });
   return Input(std::move(root));
 }
 

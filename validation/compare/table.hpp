@@ -60,8 +60,20 @@ struct Row {
   bool has_reference = false;
 };
 
+/// What is known to be otherwise in one profile, because its spacing is another one.
+struct Exception {
+  std::string profile;
+  std::string track = {};              ///< rows that read a file of this folder
+  std::vector<std::string> rows = {};  ///< rows by name
+  std::string verdict;  ///< instead of the rows' own; "left out": not made in this profile
+  std::string reason;
+  /// Whether it is about a row that stands for itself.
+  bool is_about(const Row& row) const;
+};
+
 struct ComparisonTable {
   std::deque<Row> rows;
+  std::deque<Exception> exceptions;
 };
 
 /// The declaration of validation/comparisons.toml bound to `table`, which must outlive it.
