@@ -87,6 +87,10 @@ InputTable flow_table(FlowInput& f) {
                  .about = "Liquid fraction below which melt becomes wall; melting needs 1.",
                  .minimum = 0.5,
                  .maximum = 1})
+      .whole(f.steps, {.name = "steps_per_thermal_step",
+                       .about = "Acoustic steps in a thermal one, at most.",
+                       .minimum = 1,
+                       .maximum = 1000})
       .quantity(s.skin, {.name = "skin",
                          .unit = "1",
                          .about = "Skin of the Verlet lists, in spacings.",

@@ -20,6 +20,7 @@ struct FlowInput {
   GasSettings gas;
   std::string cure = "repulsion";     ///< "none", "repulsion", "transport"
   FlowSettings settings;
+  long long steps = 10;  ///< acoustic steps in a thermal one, at most
   double smallest_drop = 20e-6;  ///< m, radius of the smallest drop whose pressure must be held
   double freezing_fraction = 0.98;
   int steps_per_thermal_step = 10;
