@@ -94,7 +94,9 @@ def to_do(given, runs):
     wanted, there = [], 0
     for run in runs:
         place = Path(given.results) / f"{run['name']}.json"
-        finished = place.is_file() and not (given.again and read_json(place).get("revision") != revision)
+        kept = read_json(place) if place.is_file() else None
+        finished = kept is not None and kept.get("settings") == run.get("set", []) and not (
+            given.again and kept.get("revision") != revision)
         there += finished
         if not finished and (not given.only or run["name"] in given.only):
             wanted.append(run)
