@@ -15,6 +15,7 @@ ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 import errata_numbers  # noqa: E402
 import rosenthal  # noqa: E402
+import study_table  # noqa: E402
 import synthetic_artifacts  # noqa: E402
 
 # What an earlier, independent calculation of the same contradictions gave, and its last digit.
@@ -70,6 +71,15 @@ class Rosenthal(unittest.TestCase):
                                     "output": {}}, ROOT)
         self.assertAlmostEqual(known["k_W_m_K"], 9.59 + 0.0141 * 1633)
         self.assertEqual(known["absorptivity"], 0.4)
+
+
+class Stale(unittest.TestCase):
+    def test_a_run_is_stale_when_code_or_input_differ(self):
+        run = {"revision": "synthetic", "inputs": [{"path": "Makefile", "sha256": "0" * 64}]}
+        self.assertTrue(study_table.is_stale(run, "synthetic", ROOT))
+        self.assertFalse(study_table.is_stale({**run, "inputs": []}, "synthetic", ROOT))
+        self.assertTrue(study_table.is_stale({**run, "inputs": []}, "no-such-revision", ROOT))
+        self.assertTrue(study_table.is_stale({"revision": "a-dirty", "inputs": []}, "a", ROOT))
 
 
 class Report(unittest.TestCase):
