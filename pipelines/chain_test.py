@@ -110,6 +110,33 @@ class Chain(unittest.TestCase):
         self.assertGreater(max(line["simulated"]["concentration"]), 0)
 
 
+class Studies(unittest.TestCase):
+    """One run of the studies at plumbing size; then there is nothing left to do."""
+
+    def studies(self, root, *options):
+        settings = [part for value in SMALL if value != "--set" for part in ("--set", value)]
+        return subprocess.run([sys.executable, "pipelines/studies.py", "pipelines/studies.toml", "--solver",
+                               BIN / "meltproof-solve", "--powder", BIN / "meltproof-powder", "--work", root / "work",
+                               "--results", root / "results", "--set", "spacing=20 um", *settings, *options],
+                              capture_output=True, text=True, cwd=ROOT)
+
+    def test_a_run_is_made_once_and_summarised(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            done = self.studies(root, "--only", "flow_off")
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            kept = json.loads((root / "results/flow_off.json").read_text())
+            for key in ("length_um", "width_sd_um", "peak_temperature_K", "evaporated_share", "revision", "inputs"):
+                self.assertTrue(kept[key] or kept[key] == 0, key)
+            self.assertIn("nothing to do", self.studies(root, "--only", "flow_off").stdout)
+            done = self.studies(root, "--only", "no_such_run")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("no_such_run", done.stderr)
+            done = run("studies", "pipelines/studies.toml", "--results", root / "results", "--output", root / "studies.json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(len(json.loads((root / "studies.json").read_text())["runs"]), 1)
+
+
 class Mistakes(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()

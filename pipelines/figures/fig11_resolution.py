@@ -52,7 +52,7 @@ def main():
         axes.set(xlabel="particle spacing [um]", ylabel=f"pool {extent} [um]", xlim=(0, None))
         axes.set_title(f"{letter}  {extent.capitalize()}")
         if series:
-            axes.set_ylim(0, None)
+            axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
         else:
             axes.text(0.5, 0.5, "not run yet:\nmake studies", transform=axes.transAxes, ha="center", va="center",
                       fontsize=7, style="italic", bbox=style.PENDING_BOX)

@@ -32,9 +32,10 @@ def main():
             axes.plot([change], [place + 0.2 * (offset - 1)], color=look["color"], marker=look["marker"],
                       linestyle="none", fillstyle="full" if counted else "none", label=extent if place == 0 else None)
     axes.axvline(0, color="black", linewidth=0.8)
+    axes.margins(x=0.1)
     if rows:
         axes.set_yticks(range(len(rows)), [f"{run['title']} ({kind})" for kind, run, _ in rows], fontsize=6.5)
-        axes.invert_yaxis()
+        axes.set_ylim(len(rows) - 0.5, -0.5)
         axes.legend(loc="best", ncols=3)
     else:
         axes.set_yticks([])

@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import json
 import re
 import runpy
 import subprocess
@@ -124,6 +125,31 @@ class Figures(unittest.TestCase):
         self.assertFalse(np.isnan(values[:8, :]).any())
         self.assertAlmostEqual(values[4, 16] - values[4, 12], 10, delta=1)  # 4 pixels are one spacing
         self.assertAlmostEqual(extent[1] - extent[0], 80)
+
+    def test_the_cooling_rate_is_speed_times_slope_behind_the_pool(self):
+        import h5py
+        import numpy as np
+        path, spacing, slope, speed = self.root / "cooling.h5", 1e-5, 5e6, 0.4
+        grid = np.stack(np.meshgrid(np.arange(80), np.arange(-3, 4), np.arange(-4, 0), indexing="ij"), axis=-1)
+        position = spacing * grid.reshape(-1, 3)
+        with h5py.File(path, "w") as file:
+            file.attrs["kind"] = "meltproof run"
+            for name, number, unit in (("spacing", spacing, "m"), ("scan_speed", speed, "m s-1"), ("exposure", 1e-3, "s")):
+                synthetic_artifacts.put(file, name, number, unit)
+            for number, time in enumerate((6e-4, 7e-4, 8e-4)):
+                behind = 7e-4 - position[:, 0]
+                synthetic_artifacts.put(file, f"snapshots/{number:04d}/time", time, "s")
+                synthetic_artifacts.put(file, f"snapshots/{number:04d}/position", position, "m")
+                synthetic_artifacts.put(file, f"snapshots/{number:04d}/temperature",
+                                        np.where(behind > 0, 3000 - slope * behind, 300.0), "K")
+        script = HERE.parent / "cooling_rate.py"
+        for share, status in ((0.5, 0), (0.1, 2)):
+            done = subprocess.run([sys.executable, str(script), str(path), "--share", str(share), "--output",
+                                   str(self.root / "rate.json")], capture_output=True, text=True)
+            self.assertEqual(done.returncode, status, done.stderr)
+        rate = json.loads((self.root / "rate.json").read_text())
+        self.assertAlmostEqual(rate["cooling_rate_K_s"] / (speed * slope), 1, delta=1e-6)
+        self.assertEqual(rate["snapshots"], 3)
 
     def test_a_wrong_kind_of_artifact_is_refused(self):
         done = subprocess.run([sys.executable, str(HERE / "fig04_powder_and_pool.py"),
