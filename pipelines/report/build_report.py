@@ -148,7 +148,7 @@ def fill_errata(template):
     with existing(Path(template) / "errata.toml").open("rb") as file:
         rows = tomllib.load(file)["row"]
     known = numbers(HERE.parent.parent)
-    return [{"later": False, **row, "finding": row["finding"].format(**known), "suite": row["suite"].format(**known)} for row in rows]
+    return [{**row, "finding": row["finding"].format(**known), "suite": row["suite"].format(**known)} for row in rows]
 
 
 def report_facts(given):
