@@ -11,7 +11,7 @@ MAKEFLAGS += --no-builtin-rules --no-print-directory
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
 
-# smoke: minutes, for CI; desk: the default, a quarter of an hour on two cores; paper: a cluster.
+# smoke: minutes, for CI; desk: the default, some half an hour on two free cores; paper: a cluster.
 PROFILE ?= desk
 THREADS ?= $(shell nproc 2>/dev/null || echo 2)
 
