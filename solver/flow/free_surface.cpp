@@ -91,6 +91,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     changed.push_back(i);
   }
   motion_.resize(all);
+  density_gradient_.resize(all);
   surface_.resize(all);
   force_.resize(all);
   // One thread: an index may stand in the list twice.
@@ -116,6 +117,9 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     motion_[n + g] = motion_[source];
     surface_[n + g] = surface_[source];
     force_[n + g] = force_[source];
+    const DensityRecord& gradient = density_gradient_[source];
+    const Vector image = ghosts[g].mirrored({gradient.x, gradient.y, gradient.z});
+    density_gradient_[n + g] = {image[0], image[1], image[2]};
     motion_[n + g].x = surface_[n + g].x = at[0];
     motion_[n + g].y = surface_[n + g].y = at[1];
     motion_[n + g].z = surface_[n + g].z = at[2];
@@ -126,6 +130,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     }
   }
   motion_.back() = MotionRecord{};
+  density_gradient_.back() = DensityRecord{};
   surface_.back() = SurfaceRecord{};
   force_.back() = ForceRecord{};
 }
@@ -163,13 +168,62 @@ void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
   });
 }
 
+/// Of the smooth profile, once per call of set_properties(): it changes little within a few steps,
+/// and an old one damps a little less but never excites.
+void FreeSurfaceFlow::density_gradients(const Particles& particles,
+                                        const std::vector<Ghost>& ghosts,
+                                        const NeighbourList& list) {
+  const MotionRecord* all = motion_.data();
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const MotionRecord& own = all[i];
+    Lane bx = 0, by = 0, bz = 0, xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const Lane dx = own.x - gather(all, j, &MotionRecord::x);
+      const Lane dy = own.y - gather(all, j, &MotionRecord::y);
+      const Lane dz = own.z - gather(all, j, &MotionRecord::z);
+      const Lane density = gather(all, j, &MotionRecord::density);
+      const Lane r2 = dx * dx + dy * dy + dz * dz;
+      const Lane r = square_root(larger(r2, Lane(1e-40)));
+      const Lane factor =
+          where_positive(density, r * kernel_.slope(r) / (r2 + kernel_.regularisation), Lane(0.0));
+      const Lane change = factor * (own.density - density);
+      bx += change * dx;
+      by += change * dy;
+      bz += change * dz;
+      xx += factor * dx * dx;
+      yy += factor * dy * dy;
+      zz += factor * dz * dz;
+      xy += factor * dx * dy;
+      xz += factor * dx * dz;
+      yz += factor * dy * dz;
+    }
+    InterfaceSums sums;
+    sums.difference = {sum_lanes(bx), sum_lanes(by), sum_lanes(bz)};
+    sums.moment = {sum_lanes(xx), sum_lanes(yy), sum_lanes(zz),
+                   sum_lanes(xy), sum_lanes(xz), sum_lanes(yz)};
+    const Vector gradient = surface_gradient(sums, {});
+    density_gradient_[i] = {gradient[0], gradient[1], gradient[2]};
+  });
+  const std::size_t n = particles.size();
+  for (const std::uint32_t g : near_ghosts_) {
+    const DensityRecord& source = density_gradient_[ghosts[g].source];
+    const Vector image = ghosts[g].mirrored({source.x, source.y, source.z});
+    density_gradient_[n + g] = {image[0], image[1], image[2]};
+  }
+}
+
 void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list, double dt) {
   const MotionRecord* all = motion_.data();
+  const DensityRecord* gradients = density_gradient_.data();
+  const bool corrected = settings_.diffusion_form == DensityDiffusion::corrected;
   const double diffusion =
       settings_.density_diffusion * kernel_.smoothing_length * settings_.sound_speed;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const MotionRecord& own = all[i];
+    const DensityRecord& gradient = gradients[i];
     Lane compression = 0, diffused = 0, cx = 0, cy = 0, cz = 0;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
@@ -186,8 +240,15 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
       const Lane slope = kernel_.slope(r), slope_over_r = slope / r;
       compression += continuity_pair(volume, slope_over_r, dx * ux + dy * uy + dz * uz);
       const Lane factor = r * slope / (r2 + kernel_.regularisation);
+      Lane smooth = 0;
+      if (corrected) {
+        smooth = 0.5 * ((gradient.x + gather(gradients, j, &DensityRecord::x)) * dx +
+                        (gradient.y + gather(gradients, j, &DensityRecord::y)) * dy +
+                        (gradient.z + gather(gradients, j, &DensityRecord::z)) * dz);
+      }
       diffused += where_positive(
-          density, density_diffusion_pair(Lane(own.density), density, volume, factor), Lane(0.0));
+          density, density_diffusion_pair(Lane(own.density), density, smooth, volume, factor),
+          Lane(0.0));
       cx += volume * slope_over_r * dx;
       cy += volume * slope_over_r * dy;
       cz += volume * slope_over_r * dz;
@@ -263,6 +324,9 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   // next one.
   colour_gradients(list, wall_);
   colour_gradients(list, liquid_);
+  if (settings_.density_diffusion > 0 && settings_.diffusion_form == DensityDiffusion::corrected) {
+    density_gradients(particles, ghosts, list);
+  }
   if (!settings_.marangoni) {
     return;
   }

@@ -23,10 +23,18 @@ enum class ClumpingCure {
               ///< Adams 2017), without the momentum that this carries
 };
 
+/// What the density diffusion acts on, see density_diffusion_pair().
+enum class DensityDiffusion {
+  plain,      ///< all differences (Molteni & Colagrossi 2009): a smooth profile diffuses too, so a
+              ///< layer under gravity slowly sinks in: its pressure is off by 14 % after 10^4 steps
+  corrected,  ///< what differs from the local gradient (Antuono et al. 2010): 0.4 % there
+};
+
 /// How the melt flows.
 struct FlowSettings {
-  double sound_speed = 50;          ///< c, m s-1: p = c^2 (rho - rho0)
-  double density_diffusion = 0.1;   ///< delta of Molteni & Colagrossi
+  double sound_speed = 50;         ///< c, m s-1: p = c^2 (rho - rho0)
+  double density_diffusion = 0.1;  ///< delta of Molteni & Colagrossi
+  DensityDiffusion diffusion_form = DensityDiffusion::plain;
   double viscosity_factor = 20;     ///< on the material's real viscosity (paper, note of Table A2)
   double artificial_viscosity = 0;  ///< alpha of Monaghan
   Vector gravity{0, 0, -9.81};      ///< m s-2
@@ -102,6 +110,10 @@ class FreeSurfaceFlow {
     double volume = 0;   // m^d
     double density = 0;  // kg m-3, zero in the solid
   };
+  /// Gradient of the density, corrected; half a cache line. Zero in the solid.
+  struct alignas(32) DensityRecord {
+    double x = 0, y = 0, z = 0;  // kg m-4
+  };
   /// The interface; one cache line.
   struct alignas(64) SurfaceRecord {
     double x = void_position, y = void_position, z = void_position, nx = 0, ny = 0, nz = 0;
@@ -118,6 +130,8 @@ class FreeSurfaceFlow {
 
   void write_motion(const Particles& particles, const std::vector<Ghost>& ghosts);
   void colour_gradients(const NeighbourList& list, const std::vector<std::uint32_t>& members);
+  void density_gradients(const Particles& particles, const std::vector<Ghost>& ghosts,
+                         const NeighbourList& list);
   void densities(Particles& particles, const NeighbourList& list, double dt);
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
                      const MeltProperties& properties);
@@ -135,6 +149,7 @@ class FreeSurfaceFlow {
   std::vector<std::uint8_t> role_;          // 0 neither, 1 liquid, 2 wall
   NeighbourList melt_near_wall_;            // of wall_[k], k in place of the particle: liquid only
   std::vector<MotionRecord> motion_;
+  std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;

@@ -13,14 +13,18 @@ T continuity_pair(const T& volume_j, const T& slope_over_r, const T& approach) {
   return volume_j * slope_over_r * approach;
 }
 
-/// **Density diffusion**: d rho_i/dt += delta h c sum_j V_j 2 (rho_i - rho_j) F_ij, which damps the
-/// checkerboard of densities that continuity leaves. (Molteni & Colagrossi 2009) Returns one
-/// summand without delta h c, kg m-3 m-2. Antisymmetric once multiplied by V_i: volume times
-/// density is only moved about.
+/// **Density diffusion**: d rho_i/dt += delta h c sum_j V_j 2 [(rho_i - rho_j) - (g_i + g_j)/2 .
+/// r_ij] F_ij, which damps the checkerboard of densities that continuity leaves. g is the corrected
+/// gradient of the density: without it the smooth profile under gravity or capillary pressure
+/// diffuses too and, since nothing passes the surface, the melt sinks in at the bottom and swells
+/// at the top. (Antuono et al. 2010; Molteni & Colagrossi 2009 for g = 0) Returns one summand
+/// without delta h c, kg m-3 m-2. Antisymmetric once multiplied by V_i: volume times density is
+/// only moved about.
+/// @param smooth (g_i + g_j)/2 . r_ij, kg m-3.
 template <class T>
-T density_diffusion_pair(const T& density_i, const T& density_j, const T& volume_j,
+T density_diffusion_pair(const T& density_i, const T& density_j, const T& smooth, const T& volume_j,
                          const T& gradient_factor) {
-  return 2.0 * volume_j * (density_i - density_j) * gradient_factor;
+  return 2.0 * volume_j * (density_i - density_j - smooth) * gradient_factor;
 }
 
 /// **Repulsion** against clumping under tension at a free surface: an additional pair pressure

@@ -11,6 +11,8 @@
 #include "solver/verification/laser_budget.hpp"
 #include "solver/verification/problems.hpp"
 #include "solver/verification/species_moving.hpp"
+#include "solver/verification/surface_drop.hpp"
+#include "solver/verification/surface_layer.hpp"
 #include "solver/verification/thermal_phase.hpp"
 #include "solver/verification/thermal_source.hpp"
 #include "solver/verification/thermal_surface.hpp"
@@ -30,6 +32,11 @@ const std::vector<VerificationKind>& verification_kinds() {
       {"moving_source", run_moving_source},
       {"evaporative_cooling", run_evaporative_cooling},
       {"laser_budget", run_laser_budget},
+      {"laplace_free", run_laplace_free},
+      {"oscillating_drop", run_oscillating_drop},
+      {"hydrostatic_free", run_hydrostatic_free},
+      {"recoil_flat", run_recoil_flat},
+      {"thermocapillary_layer", run_thermocapillary_layer},
       {"channel", run_channel},
       {"hydrostatic", run_hydrostatic},
       {"taylor_green", run_taylor_green},
