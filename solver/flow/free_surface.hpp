@@ -26,7 +26,7 @@ enum class ClumpingCure {
 /// What the density diffusion acts on, see density_diffusion_pair().
 enum class DensityDiffusion {
   plain,      ///< all differences (Molteni & Colagrossi 2009): a smooth profile diffuses too, so a
-              ///< layer under gravity slowly sinks in: its pressure is off by 14 % after 10^4 steps
+              ///< layer under gravity slowly sinks in: its pressure is off by 15 % after 10^4 steps
   corrected,  ///< what differs from the local gradient (Antuono et al. 2010): 0.4 % there
 };
 
