@@ -172,8 +172,9 @@ def report_facts(given):
         "facts": facts, "cases": cases, "passed": [c for c in cases if c["pass"]],
         "missed": [c for c in cases if not c["pass"]], "comparisons": comparisons, "measured": measured,
         "pending": pending, "failures": comparison.get("failures", []), "tracks": tracks,
-        "studies": studies, "balances": [row for row in rows if row["kind"] == "verification"
-                                         and "file" in (row.get("simulated") or {})],
+        "studies": studies, "not_run": read_json(given.verification).get("not_run", []),
+        "balances": [row for row in rows if row["kind"] == "verification" and row["verdict"] != "pending"
+                     and "file" in (row.get("simulated") or {})],
         "worst_energy": max(track["energy_relative_error"] for track in tracks),
         "worst_species": max(track["species_relative_error"] for track in tracks),
         "errata": fill_errata(given.template), "artifacts": artifacts, "inputs": inputs,
