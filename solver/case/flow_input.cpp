@@ -63,6 +63,11 @@ InputTable flow_table(FlowInput& f) {
                                       .about = "delta of Molteni and Colagrossi.",
                                       .minimum = 0,
                                       .maximum = 1})
+      .text(f.diffusion_form,
+            {.name = "density_diffusion_form",
+             .about = "plain: flattens pressure profiles too, and the melt sinks in; corrected: "
+                      "leaves a linear profile alone (after Antuono et al. 2010).",
+             .choices = {"plain", "corrected"}})
       .text(f.cure, {.name = "clumping_cure",
                      .about = "What keeps particles of the surface apart under tension.",
                      .choices = {"none", "repulsion", "transport"}})
@@ -105,6 +110,8 @@ std::optional<FlowSettings> flow_settings(const FlowInput& f, double viscosity_i
   }
   FlowSettings settings = f.settings;
   settings.viscosity_factor /= viscosity_includes;
+  settings.diffusion_form =
+      f.diffusion_form == "plain" ? DensityDiffusion::plain : DensityDiffusion::corrected;
   settings.cure = f.cure == "none"        ? ClumpingCure::none
                   : f.cure == "transport" ? ClumpingCure::transport
                                           : ClumpingCure::repulsion;

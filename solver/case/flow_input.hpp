@@ -18,9 +18,10 @@ struct FlowInput {
   bool enabled = true;
   std::string surroundings = "free";  ///< "free" surface, or "gas"
   GasSettings gas;
-  std::string cure = "repulsion";     ///< "none", "repulsion", "transport"
+  std::string diffusion_form = "corrected";  ///< "plain" or "corrected"
+  std::string cure = "repulsion";            ///< "none", "repulsion", "transport"
   FlowSettings settings;
-  long long steps = 10;  ///< acoustic steps in a thermal one, at most
+  long long steps = 10;          ///< acoustic steps in a thermal one, at most
   double smallest_drop = 20e-6;  ///< m, radius of the smallest drop whose pressure must be held
   double freezing_fraction = 0.98;
   int steps_per_thermal_step = 10;

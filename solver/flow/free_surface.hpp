@@ -34,7 +34,7 @@ enum class DensityDiffusion {
 struct FlowSettings {
   double sound_speed = 50;         ///< c, m s-1: p = c^2 (rho - rho0)
   double density_diffusion = 0.1;  ///< delta of Molteni & Colagrossi
-  DensityDiffusion diffusion_form = DensityDiffusion::plain;
+  DensityDiffusion diffusion_form = DensityDiffusion::corrected;
   double viscosity_factor = 20;     ///< on the material's real viscosity (paper, note of Table A2)
   double artificial_viscosity = 0;  ///< alpha of Monaghan
   Vector gravity{0, 0, -9.81};      ///< m s-2

@@ -75,7 +75,7 @@ Model surface_model(const VerificationCase& c) {
               : c.variant == "transport" ? ClumpingCure::transport
                                          : ClumpingCure::repulsion;
   flow.diffusion_form =
-      c.variant == "corrected" ? DensityDiffusion::corrected : DensityDiffusion::plain;
+      c.variant == "plain" ? DensityDiffusion::plain : DensityDiffusion::corrected;
   model.flow = flow;
   return model;
 }
