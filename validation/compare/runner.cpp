@@ -160,10 +160,13 @@ std::vector<RowResult> run_table(const ComparisonTable& table, const Places& pla
                          ? read_json(places.verification)
                          : json::object();
   std::vector<bool> used(table.exceptions.size(), false);
+  const auto applies = [&profile](const Exception& e) {
+    return e.profile == profile || e.profile == "every";
+  };
   for (auto& row : expand(table, cases)) {
     const Exception* exception = nullptr;
     for (std::size_t i = 0; i < table.exceptions.size(); ++i) {
-      if (table.exceptions[i].profile == profile && table.exceptions[i].is_about(row)) {
+      if (applies(table.exceptions[i]) && table.exceptions[i].is_about(row)) {
         exception = &table.exceptions[i];
         used[i] = true;
       }
@@ -185,7 +188,7 @@ std::vector<RowResult> run_table(const ComparisonTable& table, const Places& pla
     results.push_back(run_row(row, places));
   }
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (table.exceptions[i].profile == profile && !used[i]) {
+    if (applies(table.exceptions[i]) && !used[i]) {
       throw InputError(fmt::format(
           "an exception of the profile {} (\"{}\") is about no row: correct its rows or track.",
           profile, table.exceptions[i].reason));

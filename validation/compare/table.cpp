@@ -115,7 +115,7 @@ InputTable exception_table(Exception& e) {
       .text(e.profile, {.name = "profile",
                         .about = "In which profile.",
                         .required = true,
-                        .choices = {"smoke", "desk", "paper"}})
+                        .choices = {"every", "smoke", "desk", "paper"}})
       .text(e.track, {.name = "track", .about = "Rows that read a file of this folder."})
       .texts(e.rows, {.name = "rows", .about = "Rows by name."})
       .text(e.verdict, {.name = "verdict",
