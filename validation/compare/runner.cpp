@@ -188,7 +188,9 @@ std::vector<RowResult> run_table(const ComparisonTable& table, const Places& pla
     results.push_back(run_row(row, places));
   }
   for (std::size_t i = 0; i < used.size(); ++i) {
-    if (applies(table.exceptions[i]) && !used[i]) {
+    // Rows of verification cases exist only once the suite has run.
+    const bool may_be_missing = table.exceptions[i].profile == "every" && cases.empty();
+    if (applies(table.exceptions[i]) && !used[i] && !may_be_missing) {
       throw InputError(fmt::format(
           "an exception of the profile {} (\"{}\") is about no row: correct its rows or track.",
           profile, table.exceptions[i].reason));
