@@ -18,7 +18,10 @@ import artifact  # noqa: E402
 
 SMALL = ["--set", "spacing=20 um", "--set", "laser.exposure=300 us", "--set", "domain.depth=120 um",
          "--set", "domain.width=240 um", "--set", "domain.before=80 um", "--set", "domain.behind=80 um",
-         "--set", "output.averaging_window=100 us"]
+         "--set", "output.averaging_window=100 us",
+         # At 20 um flow moves the few particles of a pool by its own size between two frames: this tests
+         # the chain on a pool at rest; flow in the chain is tested by the smoke profile.
+         "--set", "flow.enabled=false"]
 
 
 def run(program, *arguments, **options):
