@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who is melt, who is wall, and the records that the passes read.
+#include <algorithm>
+#include <numeric>
+
+#include "solver/flow/free_surface.hpp"
+#include "solver/particles/block_sum.hpp"
+
+namespace meltproof::solver {
+
+void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
+                              const NeighbourList& list, bool everything) {
+  const std::size_t n = particles.size(), all = list.void_index + std::size_t{1};
+  // Whoever had a role before may have lost it; the records of all others still hold.
+  std::vector<std::uint32_t> changed;
+  if (everything || role_.size() != n) {
+    changed.resize(n);
+    std::iota(changed.begin(), changed.end(), 0U);
+  } else {
+    changed = liquid_;
+    changed.insert(changed.end(), wall_.begin(), wall_.end());
+  }
+  role_.assign(n, 0);
+  liquid_.clear();
+  wall_.clear();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (particles.phase[i] == Phase::liquid) {
+      liquid_.push_back(i);
+      role_[i] = 1;
+    }
+  }
+  for (const std::uint32_t i : liquid_) {
+    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+      const std::uint32_t j = list.index[k];
+      if (j == list.void_index) {
+        continue;
+      }
+      const std::uint32_t source = j < n ? j : ghosts[j - n].source;
+      if (role_[source] == 0 && particles.phase[source] == Phase::solid) {
+        role_[source] = 2;
+        wall_.push_back(source);
+      }
+    }
+  }
+  std::sort(wall_.begin(), wall_.end());
+  // A wall listens to the melt only, which is a small part of its list.
+  melt_near_wall_.first.clear();
+  melt_near_wall_.last.clear();
+  melt_near_wall_.index.clear();
+  for (const std::uint32_t i : wall_) {
+    const std::size_t begin = melt_near_wall_.index.size();
+    melt_near_wall_.first.push_back(begin);
+    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+      const std::uint32_t j = list.index[k];
+      if (j != list.void_index && role_[j < n ? j : ghosts[j - n].source] == 1) {
+        melt_near_wall_.index.push_back(j);
+      }
+    }
+    while ((melt_near_wall_.index.size() - begin) % lane_count != 0) {
+      melt_near_wall_.index.push_back(list.void_index);
+    }
+    melt_near_wall_.last.push_back(melt_near_wall_.index.size());
+  }
+  near_ghosts_.clear();
+  for (std::uint32_t g = 0; g < ghosts.size(); ++g) {
+    if (role_[ghosts[g].source] != 0) {
+      near_ghosts_.push_back(g);
+    }
+  }
+  for (auto* field : {&area_, &curvature_, &pressure_}) {
+    field->resize(n, 0.0);
+  }
+  for (auto* field : {&colour_, &normal_, &tension_gradient_, &acceleration_, &shift_}) {
+    field->resize(n, Vector{});
+  }
+  limited_.assign(n, 0);
+  // Solids stand still, so their records are written here and not again. Behind everybody stands
+  // the void.
+  for (const std::uint32_t i : wall_) {
+    changed.push_back(i);
+  }
+  motion_.resize(all);
+  density_gradient_.resize(all);
+  surface_.resize(all);
+  force_.resize(all);
+  // One thread: an index may stand in the list twice.
+  for (const std::uint32_t i : changed) {
+    const Vector& at = particles.position[i];
+    // What was lost takes part in nothing.
+    const bool here = particles.phase[i] != Phase::lost;
+    motion_[i] =
+        here ? MotionRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0} : MotionRecord{};
+    surface_[i] = here ? SurfaceRecord{at[0], at[1], at[2], 0, 0, 0, 0, 0} : SurfaceRecord{};
+    force_[i] = ForceRecord{};
+    if (role_[i] != 1) {
+      area_[i] = curvature_[i] = pressure_[i] = 0;
+      normal_[i] = acceleration_[i] = shift_[i] = tension_gradient_[i] = {};
+    }
+    if (role_[i] == 2) {
+      force_[i] = ForceRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0, 0, 0};
+    }
+  }
+  for (std::size_t g = 0; g < ghosts.size(); ++g) {
+    const std::uint32_t source = ghosts[g].source;
+    const Vector at = ghosts[g].image_of(particles.position[source]);
+    motion_[n + g] = motion_[source];
+    surface_[n + g] = surface_[source];
+    force_[n + g] = force_[source];
+    const DensityRecord& gradient = density_gradient_[source];
+    const Vector image = ghosts[g].mirrored({gradient.x, gradient.y, gradient.z});
+    density_gradient_[n + g] = {image[0], image[1], image[2]};
+    motion_[n + g].x = surface_[n + g].x = at[0];
+    motion_[n + g].y = surface_[n + g].y = at[1];
+    motion_[n + g].z = surface_[n + g].z = at[2];
+    if (role_[source] == 2) {
+      force_[n + g].x = at[0];
+      force_[n + g].y = at[1];
+      force_[n + g].z = at[2];
+    }
+  }
+  motion_.back() = MotionRecord{};
+  density_gradient_.back() = DensityRecord{};
+  surface_.back() = SurfaceRecord{};
+  force_.back() = ForceRecord{};
+}
+
+void FreeSurfaceFlow::write_motion(const Particles& particles, const std::vector<Ghost>& ghosts) {
+  for_each_particle(liquid_.size(), [&](std::size_t k) {
+    const std::uint32_t i = liquid_[k];
+    const Vector &at = particles.position[i], &v = particles.velocity[i];
+    motion_[i] = {at[0],
+                  at[1],
+                  at[2],
+                  v[0],
+                  v[1],
+                  v[2],
+                  particles.mass[i] / particles.density[i],
+                  particles.density[i]};
+  });
+  const std::size_t n = particles.size();
+  for (const std::uint32_t g : near_ghosts_) {
+    const std::uint32_t source = ghosts[g].source;
+    const Vector at = ghosts[g].image_of(particles.position[source]);
+    const Vector v = ghosts[g].mirrored(particles.velocity[source]);
+    motion_[n + g] = {
+        at[0], at[1], at[2], v[0], v[1], v[2], motion_[source].volume, motion_[source].density};
+  }
+}
+
+}  // namespace meltproof::solver

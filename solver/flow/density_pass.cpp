@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Continuity, density diffusion and the colour gradient.
+#include "solver/flow/free_surface.hpp"
+#include "solver/flow/separation.hpp"
+#include "solver/particles/block_sum.hpp"
+
+namespace meltproof::solver {
+
+void FreeSurfaceFlow::colour_gradients(const NeighbourList& list,
+                                       const std::vector<std::uint32_t>& members) {
+  const MotionRecord* all = motion_.data();
+  for_each_particle(members.size(), [&](std::size_t member) {
+    const std::uint32_t i = members[member];
+    const MotionRecord& own = all[i];
+    Lane cx = 0, cy = 0, cz = 0;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane weight = gather(all, j, &MotionRecord::volume) * kernel_.slope(r) / r;
+      cx += weight * dx;
+      cy += weight * dy;
+      cz += weight * dz;
+    }
+    colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
+  });
+}
+
+/// Of the smooth profile, once per call of set_properties(): it changes little within a few steps,
+/// and an old one damps a little less but never excites.
+void FreeSurfaceFlow::density_gradients(const Particles& particles,
+                                        const std::vector<Ghost>& ghosts,
+                                        const NeighbourList& list) {
+  const MotionRecord* all = motion_.data();
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const MotionRecord& own = all[i];
+    GradientSums sums;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane density = gather(all, j, &MotionRecord::density);
+      const Lane factor = where_positive(density, softened_slope(kernel_, r, r2), Lane(0.0));
+      sums.add(factor, own.density - density, dx, dy, dz);
+    }
+    const Vector gradient = surface_gradient(sums.total(), {});
+    density_gradient_[i] = {gradient[0], gradient[1], gradient[2]};
+  });
+  const std::size_t n = particles.size();
+  for (const std::uint32_t g : near_ghosts_) {
+    const DensityRecord& source = density_gradient_[ghosts[g].source];
+    const Vector image = ghosts[g].mirrored({source.x, source.y, source.z});
+    density_gradient_[n + g] = {image[0], image[1], image[2]};
+  }
+}
+
+void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list, double dt) {
+  const MotionRecord* all = motion_.data();
+  const DensityRecord* gradients = density_gradient_.data();
+  const bool corrected = settings_.diffusion_form == DensityDiffusion::corrected;
+  const double diffusion =
+      settings_.density_diffusion * kernel_.smoothing_length * settings_.sound_speed;
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const MotionRecord& own = all[i];
+    const DensityRecord& gradient = gradients[i];
+    Lane compression = 0, diffused = 0, cx = 0, cy = 0, cz = 0;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane ux = own.vx - gather(all, j, &MotionRecord::vx);
+      const Lane uy = own.vy - gather(all, j, &MotionRecord::vy);
+      const Lane uz = own.vz - gather(all, j, &MotionRecord::vz);
+      const Lane volume = gather(all, j, &MotionRecord::volume);
+      const Lane density = gather(all, j, &MotionRecord::density);
+      const Lane slope = kernel_.slope(r), slope_over_r = slope / r;
+      compression += continuity_pair(volume, slope_over_r, dx * ux + dy * uy + dz * uz);
+      const Lane factor = r * slope / (r2 + kernel_.regularisation);
+      Lane smooth = 0;
+      if (corrected) {
+        smooth = 0.5 * ((gradient.x + gather(gradients, j, &DensityRecord::x)) * dx +
+                        (gradient.y + gather(gradients, j, &DensityRecord::y)) * dy +
+                        (gradient.z + gather(gradients, j, &DensityRecord::z)) * dz);
+      }
+      diffused += where_positive(
+          density, density_diffusion_pair(Lane(own.density), density, smooth, volume, factor),
+          Lane(0.0));
+      cx += volume * slope_over_r * dx;
+      cy += volume * slope_over_r * dy;
+      cz += volume * slope_over_r * dz;
+    }
+    const double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
+    particles.density[i] += dt * rate;
+    colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
+  });
+}
+
+}  // namespace meltproof::solver

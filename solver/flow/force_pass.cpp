@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the wall feels, and the forces on the melt.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/flow/free_surface.hpp"
+#include "solver/flow/separation.hpp"
+#include "solver/particles/block_sum.hpp"
+
+namespace meltproof::solver {
+
+void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
+  const ForceRecord* all = force_.data();
+  const std::size_t n = role_.size();
+  for_each_particle(wall_.size(), [&](std::size_t member) {
+    const std::uint32_t i = wall_[member];
+    const ForceRecord& own = all[i];
+    WallSums<Lane> sums;
+    for (std::size_t k = melt_near_wall_.first[member]; k < melt_near_wall_.last[member];
+         k += lane_count) {
+      const std::uint32_t* j = &melt_near_wall_.index[k];
+      const Lane density = gather(all, j, &ForceRecord::density);
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane w = where_positive(density, kernel_.value(r), Lane(0.0));
+      wall_pair(sums, w, dx, dy, dz, gather(all, j, &ForceRecord::pressure), density,
+                gather(all, j, &ForceRecord::vx), gather(all, j, &ForceRecord::vy),
+                gather(all, j, &ForceRecord::vz));
+    }
+    const WallSums<double> sum{sum_lanes(sums.weight),     sum_lanes(sums.pressure),
+                               sum_lanes(sums.moment_x),   sum_lanes(sums.moment_y),
+                               sum_lanes(sums.moment_z),   sum_lanes(sums.velocity_x),
+                               sum_lanes(sums.velocity_y), sum_lanes(sums.velocity_z)};
+    const double pressure =
+        wall_pressure(sum, settings_.gravity[0], settings_.gravity[1], settings_.gravity[2]);
+    // A wall that pulled would hold the melt where physics lets it go.
+    limited_[i] = pressure < 0 ? 1 : 0;
+    pressure_[i] = std::max(0.0, pressure);
+    ForceRecord& record = force_[i];
+    record.pressure = pressure_[i];
+    record.vx = wall_velocity(0, sum.velocity_x, sum.weight);
+    record.vy = wall_velocity(0, sum.velocity_y, sum.weight);
+    record.vz = wall_velocity(0, sum.velocity_z, sum.weight);
+  });
+  for (const std::uint32_t g : near_ghosts_) {
+    if (role_[ghosts[g].source] == 2) {
+      const ForceRecord& source = force_[ghosts[g].source];
+      const Vector v = ghosts[g].mirrored({source.vx, source.vy, source.vz});
+      ForceRecord& image = force_[n + g];
+      image.pressure = source.pressure;
+      image.vx = v[0];
+      image.vy = v[1];
+      image.vz = v[2];
+    }
+  }
+}
+
+void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list,
+                             const MeltProperties& properties) {
+  const ForceRecord* all = force_.data();
+  const QuinticSpline half(kernel_.smoothing_length / 2, dimensions_);
+  const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
+  const bool transport = settings_.cure == ClumpingCure::transport;
+  const double artificial =
+      settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const ForceRecord& own = all[i];
+    Lane ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
+    const Lane own_square = own.volume * own.volume;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane ux = own.vx - gather(all, j, &ForceRecord::vx);
+      const Lane uy = own.vy - gather(all, j, &ForceRecord::vy);
+      const Lane uz = own.vz - gather(all, j, &ForceRecord::vz);
+      const Lane volume = gather(all, j, &ForceRecord::volume);
+      const Lane other = gather(all, j, &ForceRecord::density);
+      // Walls take the fluid's density and viscosity in the pair.
+      const Lane density = where_positive(other, other, Lane(own.density));
+      const Lane viscosity =
+          where_positive(other, gather(all, j, &ForceRecord::viscosity), Lane(own.viscosity));
+      const Lane weight = (own_square + volume * volume) * kernel_.slope(r) / r;
+      Lane pressure = pressure_pair(Lane(own.pressure), Lane(own.density),
+                                    gather(all, j, &ForceRecord::pressure), density);
+      if (repel) {
+        pressure +=
+            repulsion_pair(kernel_.value(r) * (1 / kernel_at_spacing_), settings_.repulsion);
+      }
+      const Lane softened = r2 / (r2 + kernel_.regularisation);
+      if (artificial > 0) {
+        const Lane approach = positive_part(-(dx * ux + dy * uy + dz * uz));
+        pressure += artificial * own.density * approach / (r2 + kernel_.regularisation);
+      }
+      const Lane normal = weight * pressure;
+      const Lane shear = weight * softened * viscosity_pair(Lane(own.viscosity), viscosity);
+      ax += shear * ux - normal * dx;
+      ay += shear * uy - normal * dy;
+      az += shear * uz - normal * dz;
+      if (transport) {
+        const Lane push = (own_square + volume * volume) * half.slope(r) / r;
+        sx += push * dx;
+        sy += push * dy;
+        sz += push * dz;
+      }
+    }
+    const double mass = particles.mass[i];
+    Vector& a = acceleration_[i];
+    a = {sum_lanes(ax) / mass, sum_lanes(ay) / mass, sum_lanes(az) / mass};
+    if (transport) {
+      const double background = std::min(10 * std::abs(own.pressure), settings_.transport_pressure);
+      shift_[i] = {-background * sum_lanes(sx) / mass, -background * sum_lanes(sy) / mass,
+                   -background * sum_lanes(sz) / mass};
+    }
+    double inward = 0;
+    if (settings_.surface_tension) {
+      inward += properties.surface_tension[i] * curvature_[i];
+    }
+    if (settings_.recoil) {
+      inward += properties.recoil[i];
+    }
+    const double area_over_mass = area_[i] / mass;
+    for (std::size_t d = 0; d < 3; ++d) {
+      a[d] += settings_.gravity[d] - area_over_mass * inward * normal_[i][d];
+      if (settings_.marangoni && area_[i] > 0) {
+        a[d] += area_over_mass * tension_gradient_[i][d];
+      }
+    }
+  });
+}
+
+}  // namespace meltproof::solver

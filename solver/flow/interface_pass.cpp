@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Normals, curvature, area, and the gradient of the surface tension.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/flow/free_surface.hpp"
+#include "solver/flow/separation.hpp"
+#include "solver/particles/block_sum.hpp"
+
+namespace meltproof::solver {
+
+void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
+                                    const MeltProperties& properties) {
+  const auto write = [&](std::uint32_t i) {
+    const Vector &at = particles.position[i], &c = colour_[i];
+    const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    const double strength = size * kernel_.smoothing_length;
+    SurfaceRecord& record = surface_[i];
+    record = {at[0], at[1], at[2], 0, 0, 0, properties.surface_tension[i], 0};
+    normal_[i] = {};
+    if (strength >= interface_threshold) {
+      // The colour gradient points into the metal.
+      normal_[i] = {-c[0] / size, -c[1] / size, -c[2] / size};
+      record.nx = normal_[i][0];
+      record.ny = normal_[i][1];
+      record.nz = normal_[i][2];
+      record.strength = strength;
+    }
+  };
+  for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
+  for_each_particle(wall_.size(), [&](std::size_t k) { write(wall_[k]); });
+  const std::size_t n = particles.size();
+  for (const std::uint32_t g : near_ghosts_) {
+    const std::uint32_t source = ghosts[g].source;
+    const Vector at = ghosts[g].image_of(particles.position[source]);
+    const Vector normal = ghosts[g].mirrored(normal_[source]);
+    surface_[n + g] = {at[0],
+                       at[1],
+                       at[2],
+                       normal[0],
+                       normal[1],
+                       normal[2],
+                       surface_[source].tension,
+                       surface_[source].strength};
+  }
+}
+
+void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
+                                     const NeighbourList& list, const MeltProperties& properties) {
+  write_motion(particles, ghosts);
+  // Walls stand still and melt moves little between two calls, so their normals are kept until the
+  // next one.
+  colour_gradients(list, wall_);
+  colour_gradients(list, liquid_);
+  if (settings_.density_diffusion > 0 && settings_.diffusion_form == DensityDiffusion::corrected) {
+    density_gradients(particles, ghosts, list);
+  }
+  if (!settings_.marangoni) {
+    return;
+  }
+  write_surface(particles, ghosts, properties);
+  const SurfaceRecord* all = surface_.data();
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const SurfaceRecord& own = all[i];
+    tension_gradient_[i] = {};
+    if (own.strength <= 0) {
+      return;
+    }
+    GradientSums sums;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane factor = softened_slope(kernel_, r, r2);
+      sums.add(factor, own.tension - gather(all, j, &SurfaceRecord::tension), dx, dy, dz);
+    }
+    tension_gradient_[i] = surface_gradient(sums.total(), normal_[i]);
+  });
+}
+
+void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
+  const SurfaceRecord* all = surface_.data();
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const SurfaceRecord& own = all[i];
+    area_[i] = curvature_[i] = 0;
+    limited_[i] = 0;
+    if (own.strength <= 0) {
+      return;
+    }
+    Lane turn = 0, reach = 0, strongest = own.strength;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const Lane strength = gather(all, j, &SurfaceRecord::strength);
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane plain = softened_slope(kernel_, r, r2);
+      const Lane factor = where_positive(strength, plain, Lane(0.0));
+      // Within the list's skin, but out of the kernel's support, nobody counts.
+      strongest = larger(strongest, where_positive(-factor, strength, Lane(0.0)));
+      const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
+      const Lane tx = dx - across * own.nx, ty = dy - across * own.ny, tz = dz - across * own.nz;
+      turn += factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +
+                        (own.ny - gather(all, j, &SurfaceRecord::ny)) * ty +
+                        (own.nz - gather(all, j, &SurfaceRecord::nz)) * tz);
+      reach += factor * (tx * tx + ty * ty + tz * tz);
+    }
+    double most = 0;
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      most = std::max(most, static_cast<double>(strongest[lane]));
+    }
+    if (most < outermost_threshold) {
+      normal_[i] = {};
+      return;
+    }
+    InterfaceSums sums;
+    sums.turn = sum_lanes(turn);
+    sums.reach = sum_lanes(reach);
+    bool limited = false;
+    const double depth = surface_depth(own.strength) * kernel_.smoothing_length;
+    curvature_[i] = surface_curvature(sums, dimensions_, depth, spacing_, limited);
+    limited_[i] = limited ? 1 : 0;
+    area_[i] = 2 * own.strength / kernel_.smoothing_length * motion_[i].volume;
+  });
+}
+
+}  // namespace meltproof::solver
