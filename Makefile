@@ -33,7 +33,7 @@ help:
 	@echo 'Meltproof: a reproducible validation suite for laser powder bed fusion with in-situ alloying'
 	@echo
 	@echo '  make validate                 simulate, compare, and write reports/validation.pdf and .html'
-	@echo '  make test                     build everything and run the tests'
+	@echo '  make test                     build everything and run the tests; LONG=1: those that take minutes, too'
 	@echo '  make process RECORDING=FILE   a melt pool recording: frames, pool length, annotated pictures'
 	@echo
 	@echo '  make verify                   only the cases with exact solutions'
@@ -61,7 +61,7 @@ include pipelines/recording.mk
 .PHONY: test
 test: packages build/release/build.ninja
 	@$(STAGE) 'build everything' cmake --build --preset release
-	@$(STAGE) 'test' pipelines/test.sh
+	@$(STAGE) 'test' pipelines/test.sh $(if $(LONG),long)
 
 .PHONY: clean
 clean:
