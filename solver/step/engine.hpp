@@ -40,7 +40,7 @@ struct Model {
   LatticeMoments heat_moments = LatticeMoments::second;
   bool surface_conduction = false;  ///< full conduction along free surfaces
   LatticeMoments species_moments = LatticeMoments::fourth;
-  double step_factor = 1;            ///< of the smallest limit; for studies of the order in time
+  double step_factor = 1;  ///< of the smallest limit; for studies of the order in time
   /// Particles that have not been warmed by more than this since the start exchange no heat among
   /// themselves, K; zero: everybody does. For a domain that begins at one temperature.
   double sleep_below = 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the engine lets the melt flow between two thermal steps.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "solver/particles/block_sum.hpp"
 #include "solver/step/engine.hpp"
+#include "solver/step/stopwatch.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -196,13 +196,7 @@ void Engine::rebuild_lists(bool everything) {
 }
 
 void Engine::advance_flow(double dt, int steps) {
-  StepTimes& times = times_;
-  auto last = std::chrono::steady_clock::now();
-  const auto lap = [&](double& sum) {
-    const auto now = std::chrono::steady_clock::now();
-    sum += std::chrono::duration<double>(now - last).count();
-    last = now;
-  };
+  Stopwatch watch;
   if (change_phases()) {
     bool listed = true;
     for (std::size_t i = 0; i < particles_.size(); ++i) {
@@ -220,7 +214,7 @@ void Engine::advance_flow(double dt, int steps) {
     flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
     flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
   }
-  lap(times.lists);
+  watch.lap(times_.lists);
   if (flow_->liquid().empty()) {
     return;
   }
@@ -229,7 +223,7 @@ void Engine::advance_flow(double dt, int steps) {
   if (gas_) {
     advance_gas(dt);
     place_records();
-    lap(times.flow);
+    watch.lap(times_.flow);
     return;
   }
   const double small = dt / steps;
@@ -243,16 +237,16 @@ void Engine::advance_flow(double dt, int steps) {
       const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
       farthest = std::max(farthest, x * x + y * y + z * z);
     }
-    lap(times.flow);
+    watch.lap(times_.flow);
     if (farthest > allowed * allowed) {
       rebuild_lists(false);
-      lap(times.lists);
+      watch.lap(times_.lists);
     }
     flow_->finish(particles_, ghosts_, neighbours_.list(), melt_, small);
-    lap(times.flow);
+    watch.lap(times_.flow);
   }
   place_records();
-  lap(times.lists);
+  watch.lap(times_.lists);
 }
 
 }  // namespace meltproof::solver
