@@ -17,36 +17,12 @@ constexpr double density = PlainMatter::density, specific_heat = PlainMatter::sp
 
 VerificationRun run_species_stripe(const VerificationCase& c, double spacing) {
   const Material melt = plain_material("melt", 1, 1, 2);
-  const double start = 300, volume = spacing * spacing;
-  Particles particles;
-  particles.dimensions = 2;
-  particles.spacing = spacing;
-  const std::size_t nz = particles_along(c, c.length, spacing),
-                    nx = particles_along(c, c.width, spacing);
-  for (std::size_t k = 0; k < nz; ++k) {
-    for (std::size_t i = 0; i < nx; ++i) {
-      const double low = static_cast<double>(k) * spacing, high = low + spacing;
-      // A particle that the edge of the stripe cuts holds its share, so the solute's mass is exact.
-      const double share = std::max(0.0, std::min(high, c.z2) - std::max(low, c.z1)) / spacing;
-      particles.add(static_cast<std::int64_t>(k * nx + i),
-                    {(static_cast<double>(i) + 0.5) * spacing, low + spacing / 2, 0},
-                    density * volume, volume, specific_heat * (start - 298.15), share,
-                    Origin::plate);
-    }
-  }
   Model model;
   model.domain.upper = {c.width, c.length, 0};
   model.domain.face = {
       {{Face::periodic, Face::periodic}, {Face::mirror, Face::mirror}, {Face::open, Face::open}}};
-  model.conduction = false;
-  model.species_scheme =
-      c.scheme == "as_printed" ? SpeciesScheme::as_printed : SpeciesScheme::midpoint;
-  model.species_factor =
-      c.factor == "as_printed" ? SpeciesFactor::as_printed : SpeciesFactor::consistent;
-  model.species_moments = c.species_operator == "none"     ? LatticeMoments::none
-                          : c.species_operator == "second" ? LatticeMoments::second
-                                                           : LatticeMoments::fourth;
-  Engine engine(std::move(particles), Mixture(melt, melt), constant_diffusivity(c.diffusivity),
+  set_species(model, c);
+  Engine engine(make_stripe(c, spacing), Mixture(melt, melt), constant_diffusivity(c.diffusivity),
                 model);
   run_until(engine, c.time);
 
@@ -64,6 +40,8 @@ VerificationRun run_species_stripe(const VerificationCase& c, double spacing) {
   }
   run.error = l2_error(all, 0);
   // The profile is the row of particles nearest to x = 0, in order of z, which identity gives.
+  const std::size_t nx = particles_along(c, c.width, spacing),
+                    nz = particles_along(c, c.length, spacing);
   run.position.resize(nz);
   run.value.resize(nz);
   run.exact.resize(nz);

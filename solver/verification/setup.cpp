@@ -50,6 +50,37 @@ Particles make_row(std::size_t n, double spacing, std::size_t axis) {
   return row;
 }
 
+Particles make_stripe(const VerificationCase& c, double spacing) {
+  const double volume = spacing * spacing;
+  const double enthalpy = PlainMatter::specific_heat * (300 - 298.15);
+  Particles particles;
+  particles.dimensions = 2;
+  particles.spacing = spacing;
+  const std::size_t nz = particles_along(c, c.length, spacing),
+                    nx = particles_along(c, c.width, spacing);
+  for (std::size_t k = 0; k < nz; ++k) {
+    for (std::size_t i = 0; i < nx; ++i) {
+      const double low = static_cast<double>(k) * spacing, high = low + spacing;
+      const double share = std::max(0.0, std::min(high, c.z2) - std::max(low, c.z1)) / spacing;
+      particles.add(static_cast<std::int64_t>(k * nx + i),
+                    {(static_cast<double>(i) + 0.5) * spacing, low + spacing / 2, 0},
+                    PlainMatter::density * volume, volume, enthalpy, share, Origin::plate);
+    }
+  }
+  return particles;
+}
+
+void set_species(Model& model, const VerificationCase& c) {
+  model.conduction = false;
+  model.species_scheme =
+      c.scheme == "as_printed" ? SpeciesScheme::as_printed : SpeciesScheme::midpoint;
+  model.species_factor =
+      c.factor == "as_printed" ? SpeciesFactor::as_printed : SpeciesFactor::consistent;
+  model.species_moments = c.species_operator == "none"     ? LatticeMoments::none
+                          : c.species_operator == "second" ? LatticeMoments::second
+                                                           : LatticeMoments::fourth;
+}
+
 Domain row_domain(double length, double spacing, Face lower, Face upper, std::size_t axis) {
   Domain domain;
   domain.upper = {spacing, spacing, spacing};

@@ -32,6 +32,13 @@ Diffusivity constant_diffusivity(double value);
 /// A row of n particles along `axis`, periodic across: the sums are those of three dimensions.
 Particles make_row(std::size_t n, double spacing, std::size_t axis = 0);
 
+/// A sheet of `width` by `length` (x, y) in two dimensions at 300 K, additive within z1 < y < z2.
+/// A particle that the edge of the stripe cuts holds its share, so the solute's mass is exact.
+Particles make_stripe(const VerificationCase& c, double spacing);
+
+/// Scheme, factor and operator of the additive as the case says.
+void set_species(Model& model, const VerificationCase& c);
+
 /// The domain of such a row from 0 to `length`.
 Domain row_domain(double length, double spacing, Face lower, Face upper, std::size_t axis = 0);
 

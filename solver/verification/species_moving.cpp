@@ -13,34 +13,13 @@ namespace {
 Engine make_engine(const VerificationCase& c, double spacing, double speed) {
   const Material melt = plain_material("melt", 1, 1, 2);
   const Mixture mixture(melt, melt);
-  const double volume = spacing * spacing;
-  Particles particles;
-  particles.dimensions = 2;
-  particles.spacing = spacing;
-  const std::size_t nz = particles_along(c, c.length, spacing),
-                    nx = particles_along(c, c.width, spacing);
-  for (std::size_t k = 0; k < nz; ++k) {
-    for (std::size_t i = 0; i < nx; ++i) {
-      const double low = static_cast<double>(k) * spacing, high = low + spacing;
-      // A particle that the edge of the stripe cuts holds its share, so the solute's mass is exact.
-      const double share = std::max(0.0, std::min(high, c.z2) - std::max(low, c.z1)) / spacing;
-      particles.add(static_cast<std::int64_t>(k * nx + i),
-                    {(static_cast<double>(i) + 0.5) * spacing, low + spacing / 2, 0},
-                    PlainMatter::density * volume, volume, mixture.enthalpy(300, 0), share,
-                    Origin::plate);
-    }
-  }
+  Particles particles = make_stripe(c, spacing);
   Model model;
   model.domain.upper = {c.width, c.length, 0};
   model.domain.face = {{{Face::periodic, Face::periodic},
                         {Face::periodic, Face::periodic},
                         {Face::open, Face::open}}};
-  model.conduction = false;
-  model.species_scheme =
-      c.scheme == "as_printed" ? SpeciesScheme::as_printed : SpeciesScheme::midpoint;
-  model.species_moments = c.species_operator == "none"     ? LatticeMoments::none
-                          : c.species_operator == "second" ? LatticeMoments::second
-                                                           : LatticeMoments::fourth;
+  set_species(model, c);
   FlowSettings flow;
   flow.sound_speed = c.sound_speed;
   flow.gravity = {};
