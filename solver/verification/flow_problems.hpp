@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow cases, all run by ClosedFlow. Every case keeps p0 = rho c^2 as the background pressure
-// of the transport velocity and h = spacing.
+// The flow cases, all run by ClosedFlow with background_ratio times p0 = rho c^2 as the background
+// pressure of the transport velocity and h = spacing.
 #pragma once
 
 #include "solver/verification/case.hpp"
