@@ -67,7 +67,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
       near_ghosts_.push_back(g);
     }
   }
-  for (auto* field : {&area_, &curvature_, &pressure_}) {
+  for (auto* field : {&area_, &pull_, &curvature_, &pressure_}) {
     field->resize(n, 0.0);
   }
   for (auto* field : {&colour_, &normal_, &tension_gradient_, &acceleration_, &shift_}) {
@@ -93,7 +93,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     surface_[i] = here ? SurfaceRecord{at[0], at[1], at[2], 0, 0, 0, 0, 0} : SurfaceRecord{};
     force_[i] = ForceRecord{};
     if (role_[i] != 1) {
-      area_[i] = curvature_[i] = pressure_[i] = 0;
+      area_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
       normal_[i] = acceleration_[i] = shift_[i] = tension_gradient_[i] = {};
     }
     if (role_[i] == 2) {

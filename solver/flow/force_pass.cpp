@@ -120,7 +120,7 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
     }
     const double area_over_mass = area_[i] / mass;
     for (std::size_t d = 0; d < 3; ++d) {
-      a[d] += settings_.gravity[d] - area_over_mass * inward * normal_[i][d];
+      a[d] += settings_.gravity[d] - pull_[i] / mass * inward * normal_[i][d];
       if (settings_.marangoni && area_[i] > 0) {
         a[d] += area_over_mass * tension_gradient_[i][d];
       }

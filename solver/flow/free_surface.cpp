@@ -16,7 +16,9 @@ FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpli
       kernel_(kernel),
       spacing_(spacing),
       kernel_at_spacing_(kernel.value(spacing)),
-      dimensions_(dimensions) {}
+      dimensions_(dimensions),
+      depth_(dimensions),
+      outermost_depth_(depth_(outermost_threshold)) {}
 
 void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
   for_each_particle(liquid_.size(), [&](std::size_t k) {

@@ -88,7 +88,7 @@ class FreeSurfaceFlow {
   void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
                 const NeighbourList& list, const MeltProperties& properties);
 
-  /// Surface area of a particle, m^(d-1): 2 |grad c| V; zero inside. Liquid particles only.
+  /// Surface area of a particle, m^(d-1), see surface_area(); zero inside. Liquid particles only.
   const std::vector<double>& area() const { return area_; }
   const std::vector<double>& pressure() const { return pressure_; }    ///< Pa
   const std::vector<double>& curvature() const { return curvature_; }  ///< 1/m, at the surface
@@ -117,8 +117,8 @@ class FreeSurfaceFlow {
   /// The interface; one cache line.
   struct alignas(64) SurfaceRecord {
     double x = void_position, y = void_position, z = void_position, nx = 0, ny = 0, nz = 0;
-    double tension = 0;   // N m-1
-    double strength = 0;  // |grad c| h, zero where there is no interface
+    double tension = 0;  // N m-1
+    double depth = 0;    // m, below the surface; zero where there is no interface
   };
   /// Forces; two cache lines.
   struct alignas(64) ForceRecord {
@@ -153,7 +153,10 @@ class FreeSurfaceFlow {
   std::vector<SurfaceRecord> surface_;
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
+  SurfaceDepth depth_;
+  double outermost_depth_;  // over h
   std::vector<double> area_, curvature_, pressure_;
+  std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on
   std::vector<std::uint8_t> limited_;
   LimiterCounts limiters_;
 };

@@ -61,36 +61,73 @@ Vector stir(const Vector& at) {
 }  // namespace
 
 TEST(Interface, TheDepthBelowAPlaneIsTheInverseOfItsColourGradient) {
-  for (const double depth : {0.3, 0.5, 0.9, 1.5, 1.9}) {
-    EXPECT_NEAR(surface_depth(plane_colour_gradient(depth)), depth, 1e-3);
+  for (const int dimensions : {2, 3}) {
+    const SurfaceDepth below(dimensions);
+    for (const double depth : {0.3, 0.5, 0.9, 1.5, 1.9}) {
+      EXPECT_NEAR(below(plane_colour_gradient(depth, dimensions)), depth, 1e-3);
+    }
+    // All of the kernel lies on one of the two sides.
+    double share = 0;
+    for (int i = 0; i < 3000; ++i) {
+      share += 1e-3 * plane_colour_gradient((i + 0.5) * 1e-3, dimensions);
+    }
+    EXPECT_NEAR(share, 0.5, 1e-6);
   }
-  EXPECT_NEAR(plane_colour_gradient(0.5), 0.438, 1e-3);
-  EXPECT_NEAR(plane_colour_gradient(1.5), 0.0617, 1e-4);
+  EXPECT_NEAR(plane_colour_gradient(0.5, 3), 0.4461, 1e-4);
+  EXPECT_NEAR(plane_colour_gradient(1.5, 2), 0.0578, 1e-4);
 }
 
-TEST(Interface, CurvatureIsExactForTheNormalsOfASphere) {
-  const double radius = 7, depth = 0.5;  // of the surface; the layer lies at radius - depth
+// The colour gradient below a sphere (circle), by integrating the kernel over it, is that of the
+// plane times 1 + kappa s/2, and the depth read off the plane falls short by per_curvature.
+TEST(Interface, CurvatureMakesParticlesSeemShallowerByAKnownAmount) {
+  const double radius = 20, s = 0.7, fine = 0.02;
+  for (const int dimensions : {2, 3}) {
+    const QuinticSpline kernel(1, dimensions);
+    double gradient = 0;
+    const auto reach = static_cast<int>(3 / fine);
+    for (int k = dimensions == 3 ? -reach : 0; k <= (dimensions == 3 ? reach : 0); ++k) {
+      for (int j = -reach; j < reach; ++j) {
+        // Along the normal the sum is W at the sphere: what lies beyond pulls inward.
+        const double x = (j + 0.5) * fine, y = k * fine;
+        const double rest = radius * radius - x * x - y * y;
+        const double z = std::sqrt(rest) - (radius - s);
+        gradient += kernel.value(std::sqrt(x * x + y * y + z * z)) * std::pow(fine, dimensions - 1);
+      }
+    }
+    const double kappa = (dimensions - 1) / radius, plane = plane_colour_gradient(s, dimensions);
+    EXPECT_NEAR(gradient / plane, 1 + kappa * s / 2, 0.1 * kappa * s);
+    const SurfaceDepth below(dimensions);
+    EXPECT_NEAR(below(gradient) + kappa * below.per_curvature(gradient), s, 0.1 * kappa * s);
+  }
+}
+
+TEST(Interface, CurvatureIsExactForTheNormalsOfASphereAtAnyDepth) {
+  const double radius = 7, depth = 0.5;
   const Vector own{0, 0, 1};
   InterfaceSums sums;
   std::mt19937 random(3);
   for (int k = 0; k < 12; ++k) {
     const double angle = 0.3 * static_cast<double>(random()) / 4294967295.0 + 0.05,
-                 turn = static_cast<double>(random());
+                 turn = static_cast<double>(random()), its = k % 2 == 0 ? depth : 1.4;
     const Vector n{std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
                    std::cos(angle)};
-    Vector t{}, bend{};
+    double bend = 0, along = 0;
     for (std::size_t d = 0; d < 2; ++d) {
-      t[d] = -(radius - depth) * n[d];
-      bend[d] = own[d] - n[d];
+      const double t = -(radius - its) * n[d];
+      bend += -2 * (own[d] - n[d]) * t;
+      along += -2 * t * t;
     }
-    sums.turn += -2 * (bend[0] * t[0] + bend[1] * t[1]);
-    sums.reach += -2 * (t[0] * t[0] + t[1] * t[1]);
+    sums.turn += bend;
+    sums.inset += its * bend;
+    sums.reach += along;
   }
   bool limited = false;
-  EXPECT_NEAR(surface_curvature(sums, 3, depth, 1, limited), 2 / radius, 1e-12);
-  EXPECT_NEAR(surface_curvature(sums, 2, depth, 1, limited), 1 / radius, 1e-12);
+  EXPECT_NEAR(surface_curvature(sums, 3, 0, 1, limited), 2 / radius, 1e-12);
+  EXPECT_NEAR(surface_curvature(sums, 2, 0, 1, limited), 1 / radius, 1e-12);
+  const double allowed = surface_curvature(sums, 3, 0.3, 1, limited);
+  EXPECT_NEAR(2 / allowed, radius + 0.3 * allowed, 1e-12);
   EXPECT_FALSE(limited);
-  EXPECT_NEAR(surface_curvature(sums, 3, depth, 20, limited), 2. / 20 * 2, 1e-12);
+  EXPECT_NEAR(surface_curvature(sums, 3, 0, 20, limited), 2. / 20 * 2, 1e-12);
   EXPECT_TRUE(limited) << "a radius below half a spacing is held and counted";
 }
 

@@ -24,7 +24,7 @@ void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vecto
       record.nx = normal_[i][0];
       record.ny = normal_[i][1];
       record.nz = normal_[i][2];
-      record.strength = strength;
+      record.depth = depth_(strength) * kernel_.smoothing_length;
     }
   };
   for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
@@ -41,7 +41,7 @@ void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vecto
                        normal[1],
                        normal[2],
                        surface_[source].tension,
-                       surface_[source].strength};
+                       surface_[source].depth};
   }
 }
 
@@ -64,7 +64,7 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
     const std::uint32_t i = liquid_[member];
     const SurfaceRecord& own = all[i];
     tension_gradient_[i] = {};
-    if (own.strength <= 0) {
+    if (own.depth <= 0) {
       return;
     }
     GradientSums sums;
@@ -83,43 +83,50 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const SurfaceRecord& own = all[i];
-    area_[i] = curvature_[i] = 0;
+    area_[i] = pull_[i] = curvature_[i] = 0;
     limited_[i] = 0;
-    if (own.strength <= 0) {
+    if (own.depth <= 0) {
       return;
     }
-    Lane turn = 0, reach = 0, strongest = own.strength;
+    Lane turn = 0, reach = 0, inset = 0, shallowest = own.depth;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
-      const Lane strength = gather(all, j, &SurfaceRecord::strength);
+      const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane plain = softened_slope(kernel_, r, r2);
-      const Lane factor = where_positive(strength, plain, Lane(0.0));
+      const Lane factor = where_positive(depth, plain, Lane(0.0));
       // Within the list's skin, but out of the kernel's support, nobody counts.
-      strongest = larger(strongest, where_positive(-factor, strength, Lane(0.0)));
+      shallowest = smaller(shallowest, where_positive(-factor, depth, Lane(own.depth)));
       const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
       const Lane tx = dx - across * own.nx, ty = dy - across * own.ny, tz = dz - across * own.nz;
-      turn += factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +
-                        (own.ny - gather(all, j, &SurfaceRecord::ny)) * ty +
-                        (own.nz - gather(all, j, &SurfaceRecord::nz)) * tz);
+      const Lane bend = factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +
+                                  (own.ny - gather(all, j, &SurfaceRecord::ny)) * ty +
+                                  (own.nz - gather(all, j, &SurfaceRecord::nz)) * tz);
+      turn += bend;
+      inset += depth * bend;
       reach += factor * (tx * tx + ty * ty + tz * tz);
     }
-    double most = 0;
+    double least = own.depth;
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
-      most = std::max(most, static_cast<double>(strongest[lane]));
+      least = std::min(least, static_cast<double>(shallowest[lane]));
     }
-    if (most < outermost_threshold) {
+    if (least > outermost_depth_ * kernel_.smoothing_length) {
       normal_[i] = {};
       return;
     }
     InterfaceSums sums;
     sums.turn = sum_lanes(turn);
     sums.reach = sum_lanes(reach);
+    sums.inset = sum_lanes(inset);
+    const Vector& c = colour_[i];
+    const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    const double h = kernel_.smoothing_length;
     bool limited = false;
-    const double depth = surface_depth(own.strength) * kernel_.smoothing_length;
-    curvature_[i] = surface_curvature(sums, dimensions_, depth, spacing_, limited);
+    curvature_[i] = surface_curvature(sums, dimensions_, depth_.per_curvature(size * h) * h * h,
+                                      spacing_, limited);
     limited_[i] = limited ? 1 : 0;
-    area_[i] = 2 * own.strength / kernel_.smoothing_length * motion_[i].volume;
+    pull_[i] = 2 * size * motion_[i].volume;
+    area_[i] = surface_area(pull_[i], curvature_[i], own.depth);
   });
 }
 

@@ -19,6 +19,8 @@ inline double positive_part(double value) { return value > 0 ? value : 0; }
 [[gnu::always_inline]] inline Lane positive_part(const Lane& value) { return std::experimental::max(value, Lane(0.0)); }
 inline double larger(double a, double b) { return a > b ? a : b; }
 [[gnu::always_inline]] inline Lane larger(const Lane& a, const Lane& b) { return std::experimental::max(a, b); }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+[[gnu::always_inline]] inline Lane smaller(const Lane& a, const Lane& b) { return std::experimental::min(a, b); }
 inline double square_root(double value) { return std::sqrt(value); }
 [[gnu::always_inline]] inline Lane square_root(const Lane& value) { return std::experimental::sqrt(value); }
 

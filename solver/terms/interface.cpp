@@ -3,43 +3,76 @@
 
 #include <Eigen/Dense>
 
+#include "solver/particles/kernel.hpp"
+
 namespace meltproof::solver {
 
-double plane_colour_gradient(double depth_over_h) {
-  const auto bracket = [depth_over_h](double end) {
-    return std::pow(std::max(0.0, end - depth_over_h), 5);
-  };
-  return (bracket(3) - 6 * bracket(2) + 15 * bracket(1)) / 120;
+double plane_colour_gradient(double depth_over_h, int dimensions) {
+  const double q = depth_over_h;
+  if (dimensions == 3) {
+    const auto part = [q](double end) {
+      const double rest = std::max(0.0, end - q), sixth = std::pow(rest, 6);
+      return end * sixth / 6 - rest * sixth / 7;
+    };
+    return (part(3) - 6 * part(2) + 15 * part(1)) / 60;
+  }
+  // Along the line, by Simpson's rule: the spline is smooth enough for nine digits.
+  const QuinticSpline kernel(1, 2);
+  const double end = std::sqrt(std::max(0.0, 9 - q * q));
+  constexpr int intervals = 200;
+  double sum = 0;
+  for (int i = 0; i <= intervals; ++i) {
+    const double t = end * i / intervals;
+    sum += (i == 0 || i == intervals ? 1
+            : i % 2 == 1             ? 4
+                                     : 2) *
+           kernel.value(std::sqrt(q * q + t * t));
+  }
+  return 2 * sum * end / (3 * intervals);
 }
 
-double surface_depth(double strength) {
-  // Monotone, so bisection; forty halvings would be far more than the disorder deserves.
-  double shallow = 0.25, deep = 2;
-  if (strength >= plane_colour_gradient(shallow)) {
-    return shallow;
+SurfaceDepth::SurfaceDepth(int dimensions) {
+  constexpr double shallow = 0.1, deep = 2;
+  constexpr std::size_t entries = 512;
+  const double strongest = plane_colour_gradient(shallow, dimensions);
+  step_ = strongest / (entries - 1);
+  for (std::size_t k = 0; k < entries; ++k) {
+    const double strength = step_ * static_cast<double>(k);
+    double low = shallow, high = deep;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = (low + high) / 2;
+      (plane_colour_gradient(middle, dimensions) > strength ? low : high) = middle;
+    }
+    const double depth = (low + high) / 2, by = 1e-4;
+    const double here = plane_colour_gradient(depth, dimensions);
+    const double slope = (plane_colour_gradient(depth + by, dimensions) -
+                          plane_colour_gradient(depth - by, dimensions)) /
+                         (2 * by);
+    depth_.push_back(depth);
+    per_curvature_.push_back(depth * here / (2 * std::abs(slope)));
   }
-  if (strength <= plane_colour_gradient(deep)) {
-    return deep;
-  }
-  for (int i = 0; i < 12; ++i) {
-    const double middle = (shallow + deep) / 2;
-    (plane_colour_gradient(middle) > strength ? shallow : deep) = middle;
-  }
-  return (shallow + deep) / 2;
 }
 
-double surface_curvature(const InterfaceSums& sums, int dimensions, double depth, double spacing,
-                         bool& limited) {
-  const double directions = dimensions - 1;
+double SurfaceDepth::look_up(const std::vector<double>& table, double strength) const {
+  const double last = static_cast<double>(table.size() - 1);
+  const double at = std::clamp(strength / step_, 0.0, last);
+  const auto k = static_cast<std::size_t>(std::min(at, last - 1));
+  const double share = at - static_cast<double>(k);
+  return table[k] + share * (table[k + 1] - table[k]);
+}
+
+double surface_curvature(const InterfaceSums& sums, int dimensions, double per_curvature,
+                         double spacing, bool& limited) {
+  const double directions = dimensions - 1, most = 2 / spacing;
   if (sums.reach == 0) {
     return 0;
   }
-  const double layer = directions * sums.turn / sums.reach;
-  const double most = 2 * directions / spacing;
-  const double moved = 1 + layer * depth / directions;
-  const double at_surface = moved > 0.1 ? layer / moved : -most;
-  limited = limited || std::abs(at_surface) > most || moved <= 0.1;
-  return std::clamp(at_surface, -most, most);
+  // As 1/R, the same in all directions.
+  const double layer = sums.turn / sums.reach, moved = 1 + sums.inset / sums.reach;
+  double bend = moved > 0.1 ? layer / moved : -most;
+  bend *= 2 / (1 + std::sqrt(1 + 4 * directions * per_curvature * bend * bend));
+  limited = limited || std::abs(bend) > most || moved <= 0.1;
+  return directions * std::clamp(bend, -most, most);
 }
 
 Vector surface_gradient(const InterfaceSums& sums, const Vector& normal) {

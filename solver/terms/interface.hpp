@@ -5,19 +5,37 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "solver/particles/particles.hpp"
 
 namespace meltproof::solver {
 
-/// The colour gradient of a layer whose particles lie `depth` below a plane surface, times the
-/// smoothing length: the quintic spline integrated over planes, (1/120) [(3-q)^5 - 6 (2-q)^5 + 15
-/// (1-q)^5] with q = depth/h. Half a spacing deep: 0.438; one and a half: 0.0617.
-double plane_colour_gradient(double depth_over_h);
+/// The colour gradient `depth` below a plane surface, times the smoothing length: the quintic
+/// spline of that many dimensions integrated over the plane, in three W1(q) = (1/60) [P(3) - 6 P(2)
+/// + 15 P(1)] with P(n) = n (n-q)^6/6 - (n-q)^7/7, q = depth/h. Half a spacing deep: 0.446 (in two
+/// dimensions 0.442), one and a half: 0.0538 (0.0578).
+double plane_colour_gradient(double depth_over_h, int dimensions);
 
-/// Its inverse: how deep below the surface a particle lies whose colour gradient times h is
-/// `strength`, in smoothing lengths, between 0.25 and 2.
-double surface_depth(double strength);
+/// **How deep below the surface a particle lies**, by its colour gradient.
+class SurfaceDepth {
+ public:
+  explicit SurfaceDepth(int dimensions);
+
+  /// Depth over h below a plane where the colour gradient times h is `strength`; between 0.1 and 2.
+  double operator()(double strength) const { return look_up(depth_, strength); }
+
+  /// By how much that falls short per curvature, over h^2. Below a surface of curvature kappa the
+  /// colour gradient is W1(s) (1 + kappa s/2) to first order, in two dimensions and in three, so
+  /// the depth is s + kappa s W1/(2 |dW1/ds|).
+  double per_curvature(double strength) const { return look_up(per_curvature_, strength); }
+
+ private:
+  double look_up(const std::vector<double>& table, double strength) const;
+
+  double step_;
+  std::vector<double> depth_, per_curvature_;  // at strength 0, step_, 2 step_, ...
+};
 
 /// Below this colour gradient times h a particle takes no part in the interface: the disorder of a
 /// molten interior reaches some 0.02.
@@ -29,16 +47,33 @@ inline constexpr double outermost_threshold = 0.2;
 /// What the interface pass sums up over the neighbours of one particle.
 struct InterfaceSums {
   double turn = 0, reach = 0;          ///< sum F (n_i - n_j) . r_t and sum F r_t^2
+  double inset = 0;                    ///< sum F s_j (n_i - n_j) . r_t, s_j the neighbours' depths
   std::array<double, 3> difference{};  ///< sum F r_ij (s_i - s_j), s the surface tension
   std::array<double, 6> moment{};      ///< sum F r_ij r_ij^T: xx yy zz xy xz yz
 };
 
-/// **Curvature** kappa = (d - 1) turn/reach of the layer that the particle lies in, moved to the
-/// surface `depth` above it: kappa/(1 + kappa depth/(d - 1)). Positive for a drop. At most what the
-/// spacing can hold: a radius of half a spacing. (Adami et al. 2010; the move: design, solver.md)
+/// **Curvature of the surface** above a particle, (d - 1) turn/(reach + inset). A neighbour at the
+/// depth s_j stands for the point of the surface above it, x_j + s_j n_j; r_t + s_j (n_i - n_j)_t
+/// leads there along the surface. Exact for a sphere whatever the depths of the neighbours: with
+/// r_j = R - s_j, turn sums F r_j sin^2, reach F r_j^2 sin^2. (Adami et al. 2010 for turn/reach,
+/// which is the curvature of the layers in which the neighbours lie.) `per_curvature` then allows
+/// for the depths being read off a plane, 1/kappa = 1/kappa_0 + per_curvature kappa/(d - 1).
+/// Positive for a drop. At most what the spacing can hold: a radius of half a spacing.
+/// @param per_curvature SurfaceDepth::per_curvature() h^2, m2.
 /// @param limited set to true where that limit acted.
-double surface_curvature(const InterfaceSums& sums, int dimensions, double depth, double spacing,
-                         bool& limited);
+double surface_curvature(const InterfaceSums& sums, int dimensions, double per_curvature,
+                         double spacing, bool& limited);
+
+/// **Area of the surface that a particle stands for**, m^(d-1), from `pull` = 2 |grad c| V: summed
+/// over a plane's particles that is the plane's area, but layers below a convex surface are smaller
+/// than it and 2 |grad c| lacks part of the kernel there. To first order the layers' area is 1 -
+/// kappa s of the surface's and |grad c| is 1 + kappa s/2 of the plane's. Without this a sphere of
+/// 8 spacings has 8 % too little area. (In the balance of forces both cancel: pressure acts on a
+/// particle by the same 2 |grad c| V.)
+inline double surface_area(double pull, double curvature, double depth) {
+  const double half = curvature * depth / 2;
+  return half > 0 ? pull * (1 + half) : pull / (1 - half);
+}
 
 /// **Gradient along the surface** of the quantity s: M^-1 sum F r_ij (s_i - s_j), exact for a
 /// linear s on any set of neighbours that spans space, then projected on the surface. @returns per
