@@ -74,6 +74,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     field->resize(n, Vector{});
   }
   limited_.assign(n, 0);
+  disorder_.assign(n, 0);
   // Solids stand still, so their records are written here and not again. Behind everybody stands
   // the void.
   for (const std::uint32_t i : wall_) {

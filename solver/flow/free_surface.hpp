@@ -134,7 +134,8 @@ class FreeSurfaceFlow {
                          const NeighbourList& list);
   void densities(Particles& particles, const NeighbourList& list, double dt);
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
-                     const MeltProperties& properties);
+                     const NeighbourList& list, const MeltProperties& properties);
+  void leave_disorder_out(const NeighbourList& list);
   void curvatures(const NeighbourList& list);
   void walls(const std::vector<Ghost>& ghosts);
   void forces(const Particles& particles, const NeighbourList& list,
@@ -157,7 +158,7 @@ class FreeSurfaceFlow {
   double outermost_depth_;  // over h
   std::vector<double> area_, curvature_, pressure_;
   std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on
-  std::vector<std::uint8_t> limited_;
+  std::vector<std::uint8_t> limited_, disorder_;
   LimiterCounts limiters_;
 };
 

@@ -10,7 +10,7 @@
 namespace meltproof::solver {
 
 void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
-                                    const MeltProperties& properties) {
+                                    const NeighbourList& list, const MeltProperties& properties) {
   const auto write = [&](std::uint32_t i) {
     const Vector &at = particles.position[i], &c = colour_[i];
     const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
@@ -30,19 +30,53 @@ void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vecto
   for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
   for_each_particle(wall_.size(), [&](std::size_t k) { write(wall_[k]); });
   const std::size_t n = particles.size();
-  for (const std::uint32_t g : near_ghosts_) {
-    const std::uint32_t source = ghosts[g].source;
-    const Vector at = ghosts[g].image_of(particles.position[source]);
-    const Vector normal = ghosts[g].mirrored(normal_[source]);
-    surface_[n + g] = {at[0],
-                       at[1],
-                       at[2],
-                       normal[0],
-                       normal[1],
-                       normal[2],
-                       surface_[source].tension,
-                       surface_[source].depth};
-  }
+  const auto write_images = [&] {
+    for (const std::uint32_t g : near_ghosts_) {
+      const std::uint32_t source = ghosts[g].source;
+      const SurfaceRecord& record = surface_[source];
+      const Vector at = ghosts[g].image_of(particles.position[source]);
+      const Vector normal = ghosts[g].mirrored({record.nx, record.ny, record.nz});
+      surface_[n + g] = {at[0],     at[1],     at[2],          normal[0],
+                         normal[1], normal[2], record.tension, record.depth};
+    }
+  };
+  write_images();
+  leave_disorder_out(list);
+  write_images();
+}
+
+/// A weak colour gradient is the second layer's, or the disorder of the interior: there tension
+/// would draw clumps together. Only what lies right below an outermost particle counts.
+void FreeSurfaceFlow::leave_disorder_out(const NeighbourList& list) {
+  const SurfaceRecord* all = surface_.data();
+  const double outermost = outermost_depth_ * kernel_.smoothing_length;
+  const double near = std::pow(below_outermost * kernel_.smoothing_length, 2);
+  const auto look = [&](std::uint32_t i) {
+    const SurfaceRecord& own = all[i];
+    disorder_[i] = 0;
+    if (own.depth <= outermost) {
+      return;
+    }
+    Lane found = 0;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const Lane depth = gather(all, j, &SurfaceRecord::depth);
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      found +=
+          where_positive(near - r2, where_positive(outermost - depth, depth, Lane(0.0)), Lane(0.0));
+    }
+    disorder_[i] = sum_lanes(found) > 0 ? 0 : 1;
+  };
+  for_each_particle(liquid_.size(), [&](std::size_t k) { look(liquid_[k]); });
+  for_each_particle(wall_.size(), [&](std::size_t k) { look(wall_[k]); });
+  const auto leave_out = [&](std::uint32_t i) {
+    if (disorder_[i] != 0) {
+      surface_[i].depth = surface_[i].nx = surface_[i].ny = surface_[i].nz = 0;
+      normal_[i] = {};
+    }
+  };
+  for_each_particle(liquid_.size(), [&](std::size_t k) { leave_out(liquid_[k]); });
+  for_each_particle(wall_.size(), [&](std::size_t k) { leave_out(wall_[k]); });
 }
 
 void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
@@ -58,7 +92,7 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   if (!settings_.marangoni) {
     return;
   }
-  write_surface(particles, ghosts, properties);
+  write_surface(particles, ghosts, list, properties);
   const SurfaceRecord* all = surface_.data();
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
@@ -88,15 +122,12 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
     if (own.depth <= 0) {
       return;
     }
-    Lane turn = 0, reach = 0, inset = 0, shallowest = own.depth;
+    Lane turn = 0, reach = 0, inset = 0;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
-      const Lane plain = softened_slope(kernel_, r, r2);
-      const Lane factor = where_positive(depth, plain, Lane(0.0));
-      // Within the list's skin, but out of the kernel's support, nobody counts.
-      shallowest = smaller(shallowest, where_positive(-factor, depth, Lane(own.depth)));
+      const Lane factor = where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0));
       const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
       const Lane tx = dx - across * own.nx, ty = dy - across * own.ny, tz = dz - across * own.nz;
       const Lane bend = factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +
@@ -105,14 +136,6 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
       turn += bend;
       inset += depth * bend;
       reach += factor * (tx * tx + ty * ty + tz * tz);
-    }
-    double least = own.depth;
-    for (std::size_t lane = 0; lane < lane_count; ++lane) {
-      least = std::min(least, static_cast<double>(shallowest[lane]));
-    }
-    if (least > outermost_depth_ * kernel_.smoothing_length) {
-      normal_[i] = {};
-      return;
     }
     InterfaceSums sums;
     sums.turn = sum_lanes(turn);

@@ -40,9 +40,11 @@ class SurfaceDepth {
 /// Below this colour gradient times h a particle takes no part in the interface: the disorder of a
 /// molten interior reaches some 0.02.
 inline constexpr double interface_threshold = 0.03;
-/// From here on it belongs to the outermost layer. Weaker ones take part only if such a one is
-/// within the support.
+/// From here on it belongs to the outermost layer.
 inline constexpr double outermost_threshold = 0.2;
+/// Weaker ones take part only within this distance of an outermost particle, over h: layers lie
+/// half, one and a half, two and a half spacings deep, so the second is one away and the third two.
+inline constexpr double below_outermost = 1.5;
 
 /// What the interface pass sums up over the neighbours of one particle.
 struct InterfaceSums {
