@@ -28,12 +28,12 @@ struct ConductionRecord {
   double temperature = 0, conductivity = 1;  ///< K, W m-1 K-1
 };
 
-/// The background pressure p_b of the transport velocity, over p0. Pressure that shear stores in
-/// the arrangement of the particles is lost when v~ - v relaxes that arrangement, which brakes the
-/// flow like a viscosity of order dx/p_b; the stiffest disorder of a lattice relaxes by p_b/(10 p0)
-/// in one acoustic step, and overshoots beyond 10 (beyond 20 it grows). README.md has the
-/// measurements.
-inline constexpr double background_ratio = 4;
+/// The background pressure p_b of the transport velocity, over p0, between two errors. What shear
+/// stores in the arrangement of the particles is lost when v~ - v relaxes it, which brakes a flow
+/// like a viscosity of order c dx p0/p_b; and particles at rest are stirred in proportion to p_b,
+/// which also breaks up a square lattice within some 3000 p0/p_b steps per factor e. README.md has
+/// the measurements. The stiffest disorder relaxes by p_b/(10 p0) in an acoustic step.
+inline constexpr double background_at_rest = 1, background_in_shear = 4;
 
 /// What a flow is made of besides its particles.
 struct ClosedFlowModel {
@@ -41,7 +41,7 @@ struct ClosedFlowModel {
   Vector gravity{};  ///< m s-2
   std::vector<Fluid> fluids;    ///< a particle's `fluid` counts into this
   double stiffness = 0;         ///< p0 = rho_0 c^2, Pa, of every fluid
-  double background = 0;        ///< p_b of the transport velocity, Pa; see background_ratio
+  double background = 0;        ///< p_b of the transport velocity, Pa; see background_in_shear
   double added_pressure = 0;    ///< p at rho = rho_0, Pa
   double smoothing_length = 0;  ///< m; zero: the spacing
   double skin = 0.4;            ///< of the lists, in smoothing lengths

@@ -72,7 +72,7 @@ ClosedFlow GasFlow::make(const Particles& metal, const Domain& domain, const Flo
   model.fluids = {{.density = density},
                   {.density = density / gas.density_ratio, .viscosity = gas.viscosity}};
   model.stiffness = density * flow.sound_speed * flow.sound_speed;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_at_rest * model.stiffness;
   model.interface = flow.surface_tension;
   return {std::move(all), std::move(fluid), std::move(model)};
 }

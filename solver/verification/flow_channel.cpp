@@ -53,7 +53,7 @@ VerificationRun run_channel(const VerificationCase& c, double spacing) {
   model.fluids = {{c.density, ratio * viscosity, 0, 1}, {c.density, viscosity, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10 * c.speed;
   model.stiffness = c.density * sound * sound;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_at_rest * model.stiffness;
   model.gravity = {acceleration, 0, 0};
   const double wall = wall_layers * spacing;
   const Vector lower{0, -wall, 0}, upper{c.width, c.height + wall, 0};
@@ -98,7 +98,7 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing) {
   model.fluids = {{c.density, viscosity, 0, 1}, {light, viscosity / c.density_ratio, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10 * speed;
   model.stiffness = c.density * sound * sound;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_at_rest * model.stiffness;
   model.gravity = {0, -weight, 0};
   const double wall = wall_layers * spacing, half = c.height / 2;
   // Pressure over that at the interface, and less its mean: the mean compression is none.

@@ -36,7 +36,7 @@ VerificationRun run_laplace_drop(const VerificationCase& c, double spacing) {
   const double guess = (dimensions - 1) * c.surface_tension / exact_radius;
   // 1 % compression by the drop's own pressure, unless a sound speed is given.
   model.stiffness = c.sound_speed > 0 ? c.density * c.sound_speed * c.sound_speed : 100 * guess;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_at_rest * model.stiffness;
   model.interface = true;
   // A quarter (an eighth) of the drop around the origin; planes of symmetry on all sides.
   const Vector lower{0, 0, 0}, upper{c.width, c.width, dimensions == 3 ? c.width : 0};
@@ -116,7 +116,7 @@ VerificationRun run_drop_migration(const VerificationCase& c, double spacing) {
   model.fluids = {fluid, fluid};
   model.stiffness = c.sound_speed > 0 ? c.density * c.sound_speed * c.sound_speed
                                       : 100 * 2 * c.surface_tension / c.radius;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_at_rest * model.stiffness;
   model.interface = model.heat = true;
   const double half = c.height / 2, reference = c.temperature;
   const Vector lower{0, 0, -half}, upper{c.width, c.width, half};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow cases, all run by ClosedFlow with background_ratio times p0 = rho c^2 as the background
-// pressure of the transport velocity and h = spacing.
+// The flow cases, all run by ClosedFlow with h = spacing. The background pressure of the transport
+// velocity is background_in_shear times p0 = rho c^2 in vortices, background_at_rest times
+// elsewhere.
 #pragma once
 
 #include "solver/verification/case.hpp"

@@ -18,7 +18,7 @@ VerificationRun run_taylor_green(const VerificationCase& c, double spacing) {
   model.fluids = {{1, 1 / c.reynolds, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10;
   model.stiffness = sound * sound;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_in_shear * model.stiffness;
   model.domain = box({0, 0, 0}, {1, 1, 0}, {Face::periodic, Face::periodic, Face::open});
   auto start = fill_lattice(2, spacing, {0, 0, 0}, {1, 1, 0}, model.fluids,
                             [](const Vector&) { return Placement{}; });
@@ -86,7 +86,7 @@ ClosedFlow make_cavity(const VerificationCase& c, double spacing, const ClosedFl
   model.fluids = {{1, 1 / c.reynolds, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10;
   model.stiffness = sound * sound;
-  model.background = background_ratio * model.stiffness;
+  model.background = background_in_shear * model.stiffness;
   const double wall = wall_layers * spacing;
   const Vector lower{-wall, -wall, 0}, upper{1 + wall, 1 + wall, 0};
   model.domain = box(lower, upper, {Face::open, Face::open, Face::open});
