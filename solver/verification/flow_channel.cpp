@@ -16,24 +16,6 @@ namespace {
 /// Layers of wall particles: the support of the kernel.
 constexpr double wall_layers = 3;
 
-void show(VerificationRun& run, double position, double value, double exact) {
-  run.position.push_back(position);
-  run.value.push_back(value);
-  run.exact.push_back(exact);
-}
-
-VerificationRun start_run(const ClosedFlow& flow, const std::string& what,
-                          const std::string& unit) {
-  VerificationRun run;
-  run.particles = flow.particles().size();
-  run.position_name = "height";
-  run.position_unit = "m";
-  run.position_scale = 1;
-  run.value_name = what;
-  run.value_unit = unit;
-  return run;
-}
-
 }  // namespace
 
 VerificationRun run_channel(const VerificationCase& c, double spacing) {
@@ -52,8 +34,7 @@ VerificationRun run_channel(const VerificationCase& c, double spacing) {
   ClosedFlowModel model;
   model.fluids = {{c.density, ratio * viscosity, 0, 1}, {c.density, viscosity, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10 * c.speed;
-  model.stiffness = c.density * sound * sound;
-  model.background = background_at_rest * model.stiffness;
+  set_stiffness(model, c.density, sound, background_at_rest);
   model.gravity = {acceleration, 0, 0};
   const double wall = wall_layers * spacing;
   const Vector lower{0, -wall, 0}, upper{c.width, c.height + wall, 0};
@@ -70,7 +51,7 @@ VerificationRun run_channel(const VerificationCase& c, double spacing) {
   const ShearFlow exact(
       {{c.height / 2, ratio * viscosity, force}, {c.height / 2, viscosity, force}},
       couette ? c.speed : 0);
-  VerificationRun run = start_run(flow, "speed along the plates", "m s-1");
+  VerificationRun run = start_run(flow, {"height", "m"}, {"speed along the plates", "m s-1"});
   double deviation = 0, norm = 0;
   for (std::size_t i = 0; i < flow.particles().size(); ++i) {
     if (flow.particles().phase[i] == Phase::solid) {
@@ -97,8 +78,7 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing) {
   const double viscosity = c.density * speed * c.height / c.reynolds;
   model.fluids = {{c.density, viscosity, 0, 1}, {light, viscosity / c.density_ratio, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10 * speed;
-  model.stiffness = c.density * sound * sound;
-  model.background = background_at_rest * model.stiffness;
+  set_stiffness(model, c.density, sound, background_at_rest);
   model.gravity = {0, -weight, 0};
   const double wall = wall_layers * spacing, half = c.height / 2;
   // Pressure over that at the interface, and less its mean: the mean compression is none.
@@ -133,7 +113,7 @@ VerificationRun run_hydrostatic(const VerificationCase& c, double spacing) {
     fastest = std::max(fastest, largest_speed(flow));
   }
 
-  VerificationRun run = start_run(flow, "pressure", "Pa");
+  VerificationRun run = start_run(flow, {"height", "m"}, {"pressure", "Pa"});
   double mean_value = 0, mean_exact = 0, count = 0;
   for (std::size_t i = 0; i < flow.particles().size(); ++i) {
     if (flow.particles().phase[i] == Phase::solid) {

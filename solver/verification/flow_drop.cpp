@@ -53,13 +53,7 @@ VerificationRun run_laplace_drop(const VerificationCase& c, double spacing) {
   set_tension(flow, c.surface_tension, 0, 0);
   flow.evaluate();
 
-  VerificationRun run;
-  run.particles = particles.size();
-  run.position_name = "distance from the centre";
-  run.position_unit = "m";
-  run.position_scale = 1;
-  run.value_name = "pressure";
-  run.value_unit = "Pa";
+  VerificationRun run = start_run(flow, {"distance from the centre", "m"}, {"pressure", "Pa"});
   const double reach = flow.kernel().support();
   double inside = 0, outside = 0, radius = 0;
   constexpr int samples = 50;
@@ -89,9 +83,8 @@ VerificationRun run_laplace_drop(const VerificationCase& c, double spacing) {
   }
   const double exact = (dimensions - 1) * c.surface_tension / radius;
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    run.position.push_back(distance(particles.position[i]));
-    run.value.push_back(flow.pressure()[i] - outside);
-    run.exact.push_back(run.position.back() < radius ? exact : 0);
+    const double r = distance(particles.position[i]);
+    show(run, r, flow.pressure()[i] - outside, r < radius ? exact : 0);
   }
   run.error = std::abs((inside - outside) / exact - 1);
   run.steps = flow.steps();
@@ -137,13 +130,7 @@ VerificationRun run_drop_migration(const VerificationCase& c, double spacing) {
   const double exact =
       migration_speed(c.surface_tension_slope, c.temperature_gradient, c.radius, c.viscosity,
                       c.viscosity, fluid.conductivity, fluid.conductivity);
-  VerificationRun run;
-  run.particles = particles.size();
-  run.position_name = "time";
-  run.position_unit = "s";
-  run.position_scale = 1;
-  run.value_name = "speed of the drop";
-  run.value_unit = "m s-1";
+  VerificationRun run = start_run(flow, {"time", "s"}, {"speed of the drop", "m s-1"});
   const auto drop_mean = [&](const auto& value) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -169,9 +156,7 @@ VerificationRun run_drop_migration(const VerificationCase& c, double spacing) {
     // Towards the hot side; the centre's own way, so that no particle's noise enters.
     const double now = height(), speed = (now - before) / (c.time / rows);
     before = now;
-    run.position.push_back(flow.time());
-    run.value.push_back(speed);
-    run.exact.push_back(exact);
+    show(run, flow.time(), speed, exact);
   }
   double mean = 0;
   constexpr int last = rows / 2;

@@ -51,6 +51,29 @@ FlowStart fill_lattice(int dimensions, double spacing, const Vector& lower, cons
   return start;
 }
 
+void set_stiffness(ClosedFlowModel& model, double density, double sound_speed, double background) {
+  model.stiffness = density * sound_speed * sound_speed;
+  model.background = background * model.stiffness;
+}
+
+VerificationRun start_run(const ClosedFlow& flow, const std::array<const char*, 2>& position,
+                          const std::array<const char*, 2>& value) {
+  VerificationRun run;
+  run.particles = flow.particles().size();
+  run.position_name = position[0];
+  run.position_unit = position[1];
+  run.position_scale = 1;
+  run.value_name = value[0];
+  run.value_unit = value[1];
+  return run;
+}
+
+void show(VerificationRun& run, double position, double value, double exact) {
+  run.position.push_back(position);
+  run.value.push_back(value);
+  run.exact.push_back(exact);
+}
+
 Domain box(const Vector& lower, const Vector& upper, const std::array<Face, 3>& face) {
   Domain domain;
   domain.lower = lower;

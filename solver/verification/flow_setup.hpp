@@ -2,6 +2,7 @@
 // How the flow cases are filled with particles, run and read.
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "solver/multiphase/closed_flow.hpp"
@@ -27,6 +28,16 @@ struct FlowStart {
 FlowStart fill_lattice(int dimensions, double spacing, const Vector& lower, const Vector& upper,
                        const std::vector<Fluid>& fluids,
                        const std::function<Placement(const Vector&)>& place);
+
+/// A fluid's stiffness p0 = rho c^2, and `background` times it as p_b of the transport velocity.
+void set_stiffness(ClosedFlowModel& model, double density, double sound_speed, double background);
+
+/// A run whose profile shows `value` over `position`, each a name and its SI unit.
+VerificationRun start_run(const ClosedFlow& flow, const std::array<const char*, 2>& position,
+                          const std::array<const char*, 2>& value);
+
+/// Appends one point to the profile.
+void show(VerificationRun& run, double position, double value, double exact);
 
 /// A box whose faces along each axis are the given ones.
 Domain box(const Vector& lower, const Vector& upper, const std::array<Face, 3>& face);

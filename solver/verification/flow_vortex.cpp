@@ -17,8 +17,7 @@ VerificationRun run_taylor_green(const VerificationCase& c, double spacing) {
   ClosedFlowModel model;
   model.fluids = {{1, 1 / c.reynolds, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10;
-  model.stiffness = sound * sound;
-  model.background = background_in_shear * model.stiffness;
+  set_stiffness(model, 1, sound, background_in_shear);
   model.domain = box({0, 0, 0}, {1, 1, 0}, {Face::periodic, Face::periodic, Face::open});
   auto start = fill_lattice(2, spacing, {0, 0, 0}, {1, 1, 0}, model.fluids,
                             [](const Vector&) { return Placement{}; });
@@ -51,20 +50,13 @@ VerificationRun run_taylor_green(const VerificationCase& c, double spacing) {
     }
     return Reading{along / mode, std::sqrt(energy / mode)};
   };
-  VerificationRun run;
-  run.particles = particles.size();
-  run.position_name = "time";
-  run.position_unit = "s";
-  run.position_scale = 1;
-  run.value_name = "amplitude of the vortices";
-  run.value_unit = "m s-1";
+  VerificationRun run = start_run(flow, {"time", "s"}, {"amplitude of the vortices", "m s-1"});
   const double rate = taylor_green_rate(c.reynolds);
   constexpr int rows = 20;
   for (int row = 1; row <= rows; ++row) {
     run_until(flow, began + c.time * row / rows);
-    run.position.push_back(flow.time() - began);
-    run.value.push_back(read().amplitude);
-    run.exact.push_back(std::exp(rate * (flow.time() - began)));
+    const double time = flow.time() - began;
+    show(run, time, read().amplitude, std::exp(rate * time));
   }
   const double last = run.exact.back();
   run.error = std::abs(run.value.back() / last - 1);
@@ -85,8 +77,7 @@ ClosedFlow make_cavity(const VerificationCase& c, double spacing, const ClosedFl
   ClosedFlowModel model;
   model.fluids = {{1, 1 / c.reynolds, 0, 1}};
   const double sound = c.sound_speed > 0 ? c.sound_speed : 10;
-  model.stiffness = sound * sound;
-  model.background = background_in_shear * model.stiffness;
+  set_stiffness(model, 1, sound, background_in_shear);
   const double wall = wall_layers * spacing;
   const Vector lower{-wall, -wall, 0}, upper{1 + wall, 1 + wall, 0};
   model.domain = box(lower, upper, {Face::open, Face::open, Face::open});
@@ -146,25 +137,17 @@ VerificationRun run_cavity(const VerificationCase& c, double spacing) {
               samples;
     }
   }
-  VerificationRun run;
+  VerificationRun run =
+      start_run(*flow, {"place on the middle line (u on the vertical first, then v)", "m"},
+                {"speed", "m s-1"});
   run.steps = flow->steps();
-  run.particles = flow->particles().size();
-  run.position_name = "place on the middle line (u on the vertical first, then v)";
-  run.position_unit = "m";
-  run.position_scale = 1;
-  run.value_name = "speed";
-  run.value_unit = "m s-1";
   double worst_u = 0, worst_v = 0;
   for (std::size_t k = 0; k < u.size(); ++k) {
-    run.position.push_back(table.y[k]);
-    run.value.push_back(u[k]);
-    run.exact.push_back(table.u[k]);
+    show(run, table.y[k], u[k], table.u[k]);
     worst_u = std::max(worst_u, std::abs(u[k] - table.u[k]));
   }
   for (std::size_t k = 0; k < v.size(); ++k) {
-    run.position.push_back(table.x[k]);
-    run.value.push_back(v[k]);
-    run.exact.push_back(table.v[k]);
+    show(run, table.x[k], v[k], table.v[k]);
     worst_v = std::max(worst_v, std::abs(v[k] - table.v[k]));
   }
   run.error = std::max(worst_u, worst_v);
