@@ -63,6 +63,13 @@ InputTable flow_table(FlowInput& f) {
                                       .about = "delta of Molteni and Colagrossi.",
                                       .minimum = 0,
                                       .maximum = 1})
+      .quantity(s.density_relaxation,
+                {.name = "density_relaxation",
+                 .unit = "1",
+                 .about = "N: inside the melt the density goes to the sum over the particles "
+                          "within N smoothing lengths' travel of sound; 0: never.",
+                 .minimum = 0,
+                 .maximum = 1e6})
       .text(f.diffusion_form,
             {.name = "density_diffusion_form",
              .about = "plain: flattens pressure profiles too, and the melt sinks in; corrected: "
@@ -76,6 +83,11 @@ InputTable flow_table(FlowInput& f) {
                               .about = "Strength k of the cure \"repulsion\".",
                               .minimum = 0,
                               .maximum = 1e7})
+      .quantity(s.repulsion_distance, {.name = "repulsion_distance",
+                                       .unit = "1",
+                                       .about = "Below which it acts, in spacings.",
+                                       .minimum = 0.3,
+                                       .maximum = 1})
       .quantity(s.transport_pressure, {.name = "transport_pressure",
                                        .unit = "Pa",
                                        .about = "Background pressure of the cure \"transport\".",

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Continuity, density diffusion and the colour gradient.
+#include <cmath>
+
 #include "solver/flow/free_surface.hpp"
 #include "solver/flow/separation.hpp"
 #include "solver/particles/block_sum.hpp"
@@ -59,11 +61,17 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
   const bool corrected = settings_.diffusion_form == DensityDiffusion::corrected;
   const double diffusion =
       settings_.density_diffusion * kernel_.smoothing_length * settings_.sound_speed;
+  const bool relax = settings_.density_relaxation > 0;
+  const double relaxation =
+      !relax ? 0
+             : settings_.sound_speed / (settings_.density_relaxation * kernel_.smoothing_length);
+  const double at_centre = kernel_.value(0.0);
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const MotionRecord& own = all[i];
     const DensityRecord& gradient = gradients[i];
-    Lane compression = 0, diffused = 0, cx = 0, cy = 0, cz = 0;
+    const double reference = particles.mass[i] / particles.volume[i];
+    Lane compression = 0, diffused = 0, summed = 0, cx = 0, cy = 0, cz = 0;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
@@ -84,13 +92,23 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
       diffused += where_positive(
           density, density_diffusion_pair(Lane(own.density), density, smooth, volume, factor),
           Lane(0.0));
+      if (relax) {
+        // Walls take the melt's density at rest.
+        summed += volume * where_positive(density, density, Lane(reference)) * kernel_.value(r);
+      }
       cx += volume * slope_over_r * dx;
       cy += volume * slope_over_r * dy;
       cz += volume * slope_over_r * dz;
     }
-    const double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
-    particles.density[i] += dt * rate;
     colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
+    double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
+    if (relax) {
+      const double sum = (sum_lanes(summed) + particles.mass[i] * at_centre) / lattice_sum_;
+      const double strength =
+          std::hypot(colour_[i][0], colour_[i][1], colour_[i][2]) * kernel_.smoothing_length;
+      rate += relaxation * density_excess(sum, own.density, strength / interface_threshold);
+    }
+    particles.density[i] += dt * rate;
   });
 }
 

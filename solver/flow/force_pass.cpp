@@ -59,6 +59,7 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
   const ForceRecord* all = force_.data();
   const QuinticSpline half(kernel_.smoothing_length / 2, dimensions_);
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
+  const double over_onset = 1 / kernel_.value(settings_.repulsion_distance * spacing_);
   const bool transport = settings_.cure == ClumpingCure::transport;
   const double artificial =
       settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
@@ -83,8 +84,7 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
       Lane pressure = pressure_pair(Lane(own.pressure), Lane(own.density),
                                     gather(all, j, &ForceRecord::pressure), density);
       if (repel) {
-        pressure +=
-            repulsion_pair(kernel_.value(r) * (1 / kernel_at_spacing_), settings_.repulsion);
+        pressure += repulsion_pair(kernel_.value(r) * over_onset, settings_.repulsion);
       }
       const Lane softened = r2 / (r2 + kernel_.regularisation);
       if (artificial > 0) {

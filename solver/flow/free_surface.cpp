@@ -15,10 +15,20 @@ FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpli
     : settings_(settings),
       kernel_(kernel),
       spacing_(spacing),
-      kernel_at_spacing_(kernel.value(spacing)),
       dimensions_(dimensions),
       depth_(dimensions),
-      outermost_depth_(depth_(outermost_threshold)) {}
+      outermost_depth_(depth_(outermost_threshold)) {
+  const auto reach = static_cast<int>(std::ceil(kernel.support() / spacing));
+  lattice_sum_ = 0;
+  for (int i = -reach; i <= reach; ++i) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int k = dimensions == 3 ? -reach : 0; k <= (dimensions == 3 ? reach : 0); ++k) {
+        lattice_sum_ += kernel.value(spacing * std::sqrt(i * i + j * j + k * k));
+      }
+    }
+  }
+  lattice_sum_ *= std::pow(spacing, dimensions);
+}
 
 void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
   for_each_particle(liquid_.size(), [&](std::size_t k) {

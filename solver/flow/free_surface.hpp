@@ -35,12 +35,16 @@ struct FlowSettings {
   double sound_speed = 50;         ///< c, m s-1: p = c^2 (rho - rho0)
   double density_diffusion = 0.1;  ///< delta of Molteni & Colagrossi
   DensityDiffusion diffusion_form = DensityDiffusion::corrected;
+  /// N of density_excess(): the density of the interior goes to the particles' own sum within N
+  /// smoothing lengths' travel of sound; zero: never.
+  double density_relaxation = 0;
   double viscosity_factor = 20;     ///< on the material's real viscosity (paper, note of Table A2)
   double artificial_viscosity = 0;  ///< alpha of Monaghan
   Vector gravity{0, 0, -9.81};      ///< m s-2
   bool surface_tension = true, marangoni = true, recoil = true;
   ClumpingCure cure = ClumpingCure::repulsion;
   double repulsion = 2e4;           ///< Pa, k of repulsion_pair()
+  double repulsion_distance = 1;    ///< d of repulsion_pair(), in spacings
   double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
   double skin = 0.5;                ///< of the Verlet lists, in spacings
 };
@@ -143,7 +147,7 @@ class FreeSurfaceFlow {
 
   FlowSettings settings_;
   QuinticSpline kernel_;
-  double spacing_, kernel_at_spacing_;
+  double spacing_;
   int dimensions_;
   std::vector<std::uint32_t> liquid_, wall_;
   std::vector<std::uint32_t> near_ghosts_;  // ghosts of liquid and wall particles
@@ -155,6 +159,7 @@ class FreeSurfaceFlow {
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;
+  double lattice_sum_ = 1;  // sum V W of the undisturbed lattice
   double outermost_depth_;  // over h
   std::vector<double> area_, curvature_, pressure_;
   std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on

@@ -27,9 +27,22 @@ T density_diffusion_pair(const T& density_i, const T& density_j, const T& smooth
   return 2.0 * volume_j * (density_i - density_j - smooth) * gradient_factor;
 }
 
+/// **Density relaxation**: d rho_i/dt += w c/(N h) (rho_sum - rho_i), rho_sum = sum_j m_j W_ij over
+/// that of the undisturbed lattice. Continuity alone forgets how many particles there are in a
+/// place: what its errors add up to is volume that the melt loses or wins. Only inside, where the
+/// sum misses no neighbour: w falls from one to zero as the colour gradient goes from none to the
+/// interface's threshold. Returns w (rho_sum - rho_i), kg m-3.
+/// @param colour the colour gradient over that threshold.
+inline double density_excess(double summed, double density, double colour) {
+  return colour < 1 ? (1 - colour) * (summed - density) : 0;
+}
+
 /// **Repulsion** against clumping under tension at a free surface: an additional pair pressure
-/// k max(0, (W_ij/W(dx))^4 - 1) in Pa, which vanishes on the undisturbed lattice and beyond.
+/// k max(0, (W_ij/W(d))^4 - 1) in Pa, which vanishes beyond the distance d. With d of a whole
+/// spacing it vanishes on the undisturbed lattice, but an undisturbed melt's nearest neighbours are
+/// some 0.85 spacings away: there it holds layers together like a yield stress.
 /// (after Monaghan 2000, without the factor of the pressure)
+/// @param kernel_ratio W_ij/W(d).
 template <class T>
 T repulsion_pair(const T& kernel_ratio, double strength) {
   const T square = kernel_ratio * kernel_ratio;

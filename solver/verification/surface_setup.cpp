@@ -137,7 +137,7 @@ MeanPressure mean_pressure(const Engine& engine, const std::function<bool(const 
   const QuinticSpline& kernel = engine.kernel();
   const FlowSettings& settings = engine.flow().settings();
   const double strength = settings.cure == ClumpingCure::repulsion ? settings.repulsion : 0;
-  const double lattice = kernel.value(particles.spacing);
+  const double onset = kernel.value(settings.repulsion_distance * particles.spacing);
   const auto ghosts = make_ghosts(particles, engine.model().domain, kernel.support());
   const NeighbourList list = make_neighbours(particles, ghosts, kernel.support());
   const std::size_t n = particles.size();
@@ -162,7 +162,7 @@ MeanPressure mean_pressure(const Engine& engine, const std::function<bool(const 
       const double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
       const double r = std::sqrt(x * x + y * y + z * z);
       const double its = particles.mass[source] / particles.density[source];
-      virial += (own * own + its * its) * repulsion_pair(kernel.value(r) / lattice, strength) * r *
+      virial += (own * own + its * its) * repulsion_pair(kernel.value(r) / onset, strength) * r *
                 kernel.slope(r);
     }
     mean.repulsion -= virial / (2 * particles.dimensions);
