@@ -76,6 +76,7 @@ TEST(ClosedFlow, KeepsMomentumInAPeriodicBox) {
 
 TEST(ClosedFlow, GivesTheSameBytesOnAnyNumberOfThreads) {
   std::vector<Vector> velocity;
+  const int before = omp_get_max_threads();
   for (const int threads : {1, 2}) {
     omp_set_num_threads(threads);
     ClosedFlow flow = shaken_box(2, 48, true);
@@ -88,6 +89,7 @@ TEST(ClosedFlow, GivesTheSameBytesOnAnyNumberOfThreads) {
       EXPECT_EQ(flow.particles().velocity, velocity);
     }
   }
+  omp_set_num_threads(before);
 }
 
 TEST(ClosedFlow, HoldsASmallHydrostaticColumn) {
