@@ -157,7 +157,7 @@ TEST(Interface, TheGradientOfALinearFieldIsExactOnAnyNeighbours) {
   }
 }
 
-// By 2 |grad c| V alone the sphere would have 5.5 % too little.
+// By 2 |grad c| V alone the sphere has 5.5 % too little, the circle 1.9 %.
 TEST(Interface, ADropHasTheAreaOfItsSphere) {
   for (const std::int64_t dimensions : {2, 3}) {
     VerificationCase c = melt_case();
@@ -181,7 +181,7 @@ TEST(Interface, ADropHasTheAreaOfItsSphere) {
     const double pi = 3.14159265358979;
     const double exact =
         dimensions == 3 ? std::cbrt(36 * pi * volume * volume) : 2 * std::sqrt(pi * volume);
-    EXPECT_NEAR(area / exact, 1, dimensions == 3 ? 0.025 : 0.02);
+    EXPECT_NEAR(area / exact, 1, dimensions == 3 ? 0.025 : 0.01);
   }
 }
 
