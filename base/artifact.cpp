@@ -10,12 +10,14 @@
 namespace meltproof {
 
 struct ArtifactWriter::State {
+  bool prepared = prepare_hdf5();  // before any other call of the library
   AtomicFile place;
+  bool in_memory;
   Handle file{H5I_INVALID_HID, &H5Fclose};
   Handle link_options{H5Pcreate(H5P_LINK_CREATE), &H5Pclose};
   bool failed = false;
 
-  explicit State(const std::filesystem::path& path) : place(path) {}
+  State(const std::filesystem::path& path, bool memory) : place(path), in_memory(memory) {}
 
   [[noreturn]] void fail(const std::string& name) {
     failed = true;
@@ -122,13 +124,18 @@ struct ArtifactWriter::State {
   }
 };
 
-ArtifactWriter::ArtifactWriter(const std::filesystem::path& path, const std::string& kind)
-    : state_(std::make_unique<State>(path)) {
-  silence_hdf5();
+ArtifactWriter::ArtifactWriter(const std::filesystem::path& path, const std::string& kind,
+                               bool in_memory)
+    : state_(std::make_unique<State>(path, in_memory)) {
   const Handle options{H5Pcreate(H5P_FILE_CREATE), &H5Pclose};
   H5Pset_obj_track_times(options.get(), false);
+  const Handle access{H5Pcreate(H5P_FILE_ACCESS), &H5Pclose};
+  if (in_memory) {
+    constexpr std::size_t growth = std::size_t{1} << 22U;
+    H5Pset_fapl_core(access.get(), growth, false);
+  }
   state_->file = Handle{
-      H5Fcreate(state_->place.temporary().c_str(), H5F_ACC_TRUNC, options.get(), H5P_DEFAULT),
+      H5Fcreate(state_->place.temporary().c_str(), H5F_ACC_TRUNC, options.get(), access.get()),
       &H5Fclose};
   if (!state_->file.valid()) {
     throw InputError(fmt::format(
@@ -186,6 +193,25 @@ void ArtifactWriter::attribute(const std::string& name, const std::string& value
   write_text_attribute(at.get(), name, value);
 }
 
+void ArtifactWriter::copy_from(const ArtifactReader& other, const std::string& group) {
+  // Asked beforehand, because HDF5's copying does not survive a disk that fills up meanwhile.
+  std::error_code unknown;
+  const auto room = std::filesystem::space(state_->place.temporary().parent_path(), unknown);
+  if (!unknown && room.available < std::filesystem::file_size(other.path()) + (1U << 20U)) {
+    state_->fail(group + " of " + other.path().string());
+  }
+  const Handle from{H5Fopen(other.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose};
+  if (!from.valid() || !copy_group(from.get(), state_->file.get(), group)) {
+    state_->fail(group + " of " + other.path().string());
+  }
+}
+
+void ArtifactWriter::copy_to(ArtifactWriter& other, const std::string& group) const {
+  if (!copy_group(state_->file.get(), other.state_->file.get(), group)) {
+    other.state_->fail(group);
+  }
+}
+
 void ArtifactWriter::commit(const Provenance& provenance) {
   {
     const Handle group{
@@ -206,7 +232,17 @@ void ArtifactWriter::commit(const Provenance& provenance) {
   write("provenance/threads", provenance.threads, "1", "threads per rank");
   write("provenance/wall_time", provenance.wall_time, "s",
         "from the start of the program to this file");
-  if (H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL) < 0 || !state_->file.reset()) {
+  if (H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL) < 0) {
+    state_->fail("as a whole");
+  }
+  if (state_->in_memory) {
+    std::string image(static_cast<std::size_t>(H5Fget_file_image(state_->file.get(), nullptr, 0)),
+                      '\0');
+    H5Fget_file_image(state_->file.get(), image.data(), image.size());
+    write_file(state_->place.place(), image);
+    return;
+  }
+  if (!state_->file.reset()) {
     state_->fail("as a whole");
   }
   state_->place.commit();

@@ -16,6 +16,8 @@
 
 namespace meltproof {
 
+class ArtifactReader;
+
 /// Writes an artifact under a temporary name beside its place; commit() renames it. Without
 /// commit() nothing is left behind. Data sets are named by their path ("fields/temperature"),
 /// groups are made as needed, and nothing volatile (clock, host) enters a data set, so equal
@@ -23,8 +25,11 @@ namespace meltproof {
 class ArtifactWriter {
  public:
   /// @param kind what the artifact is, for example "meltproof powder bed"; readers check it.
+  /// @param in_memory builds the file in memory and writes it whole at commit(): for what must not
+  /// be caught by a full disk half-way, which HDF5 itself does not survive.
   /// @throws InputError if the folder does not exist or cannot be written.
-  ArtifactWriter(const std::filesystem::path& path, const std::string& kind);
+  ArtifactWriter(const std::filesystem::path& path, const std::string& kind,
+                 bool in_memory = false);
   ~ArtifactWriter();
   ArtifactWriter(const ArtifactWriter&) = delete;
   ArtifactWriter& operator=(const ArtifactWriter&) = delete;
@@ -67,6 +72,11 @@ class ArtifactWriter {
   /// A text attribute of the root group, or of `object` if given.
   void attribute(const std::string& name, const std::string& value,
                  const std::string& object = "/");
+
+  /// Copies a group with everything in it, by the same name, from another artifact or into one that
+  /// is being written. @throws std::runtime_error with a sentence if that fails.
+  void copy_from(const ArtifactReader& other, const std::string& group);
+  void copy_to(ArtifactWriter& other, const std::string& group) const;
 
   /// Writes `/provenance`, closes the file and gives it its name. @throws std::runtime_error with a
   /// sentence if the disk is full.

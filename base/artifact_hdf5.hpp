@@ -37,10 +37,16 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its error stack by default; our sentences replace it.
-inline void silence_hdf5() {
-  static const bool silent = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
-  static_cast<void>(silent);
+/// To be called before any other function of HDF5. It prints its error stack by default; our
+/// sentences replace it. Nor may it tidy up as the program ends: every handle is closed by then,
+/// and what a full disk left it with crashes it there. @returns true.
+inline bool prepare_hdf5() {
+  static const bool done = [] {
+    H5dont_atexit();
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    return true;
+  }();
+  return done;
 }
 
 template <class T>
@@ -119,6 +125,13 @@ inline std::string read_text_attribute(hid_t object, const std::string& name) {
     return "";
   }
   return text.substr(0, text.find('\0'));
+}
+
+/// Copies a group with everything in it by the same name; false if that fails.
+inline bool copy_group(hid_t from, hid_t to, const std::string& group) {
+  const Handle links{H5Pcreate(H5P_LINK_CREATE), &H5Pclose};
+  H5Pset_create_intermediate_group(links.get(), 1);
+  return H5Ocopy(from, group.c_str(), to, group.c_str(), H5P_DEFAULT, links.get()) >= 0;
 }
 
 }  // namespace meltproof

@@ -33,7 +33,7 @@ struct ArtifactReader::State {
 
 ArtifactReader::ArtifactReader(const std::filesystem::path& path, const std::string& kind)
     : state_(std::make_unique<State>()) {
-  silence_hdf5();
+  prepare_hdf5();
   state_->path = path;
   if (!std::filesystem::is_regular_file(path)) {
     throw InputError(fmt::format("{} cannot be opened: there is no such file", path.string()));

@@ -66,6 +66,30 @@ TEST(Artifact, NothingIsLeftBehindWithoutCommit) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
+TEST(Artifact, GroupsAreCopiedInAndOutAndAFileMadeInMemoryReadsTheSame) {
+  const auto folder = fresh_folder("artifact_copy");
+  const std::vector<double> values{1.5, -2, 3e300};
+  ArtifactWriter source(folder / "whole.h5", "meltproof test");
+  source.write("part/0/values", std::span<const double>(values), {3}, "m", "some");
+  source.write("part/1/values", std::span<const double>(values), {3}, "m", "others");
+  {
+    ArtifactWriter piece(folder / "piece.h5", "meltproof piece", true);
+    source.copy_to(piece, "part/1");
+    EXPECT_FALSE(std::filesystem::exists(folder / "piece.h5"));
+    piece.commit({});
+  }
+  const ArtifactReader piece(folder / "piece.h5", "meltproof piece");
+  EXPECT_FALSE(piece.has("part/0/values"));
+  ArtifactWriter again(folder / "again.h5", "meltproof test");
+  again.copy_from(piece, "part/1");
+  again.commit({});
+  const auto read = ArtifactReader(folder / "again.h5").read<double>("part/1/values");
+  EXPECT_EQ(read.values, values);
+  EXPECT_EQ(read.units, "m");
+  EXPECT_THROW(ArtifactWriter(folder / "no.h5", "meltproof test").copy_from(piece, "part/0"),
+               std::runtime_error);
+}
+
 TEST(Artifact, AnotherKindOrNoHdf5IsRefused) {
   const auto folder = fresh_folder("artifact_kind");
   write_example(folder / "a.h5");

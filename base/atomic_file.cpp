@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,6 +37,12 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+  // The name must not reach the disk before the content does, or a machine that loses power leaves
+  // an empty file in the place of a good one.
+  if (const int file = ::open(temporary_.c_str(), O_RDONLY); file >= 0) {
+    ::fsync(file);
+    ::close(file);
+  }
   std::error_code problem;
   std::filesystem::rename(temporary_, place_, problem);
   if (problem) {

@@ -21,7 +21,7 @@ Program::Program(const std::string& name, const std::string& about)
       "and\n"
       "described, but what was looked for is not in it; 4 input ends early, results stand for its "
       "whole\n"
-      "frames.");
+      "frames; 5 stopped by a signal, with a checkpoint to go on from.");
 }
 
 int Program::run(int argc, const char* const* argv, const std::function<ExitStatus()>& body) {
@@ -41,6 +41,9 @@ int Program::run(int argc, const char* const* argv, const std::function<ExitStat
   } catch (const InputError& problem) {
     fmt::print(stderr, "{}: error: {}\n", name_, problem.what());
     return static_cast<int>(ExitStatus::bad_input);
+  } catch (const Stopped& request) {
+    fmt::print(stderr, "{}: stopped: {}\n", name_, request.what());
+    return static_cast<int>(ExitStatus::stopped);
   } catch (const std::exception& problem) {
     fmt::print(stderr, "{}: failed: {}\n", name_, problem.what());
     return static_cast<int>(ExitStatus::failure);

@@ -9,13 +9,13 @@
 #include <stdexcept>
 
 #include "revision.hpp"
-#include <H5public.h>
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <openssl/opensslv.h>
 #include <spdlog/version.h>
 #include <toml++/impl/version.h>
 
+#include "base/artifact_hdf5.hpp"
 #include "base/error.hpp"
 
 namespace meltproof {
@@ -46,6 +46,7 @@ class Sha256 {
 
 std::map<std::string, std::string> library_versions() {
   unsigned int major = 0, minor = 0, release = 0;
+  prepare_hdf5();
   H5get_libversion(&major, &minor, &release);
   return {
       {"compiler", fmt::format("{}", __VERSION__)},

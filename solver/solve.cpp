@@ -11,16 +11,31 @@ int main(int argc, char** argv) {
   Program program(
       "meltproof-solve",
       "Simulates a single laser track: heat, melting and alloy diffusion in three dimensions.\n"
-      "Example: meltproof-solve solver/cases/track_1wt.toml --powder powder.h5 --output run/");
+      "Example: meltproof-solve solver/cases/track_1wt.toml --powder powder.h5 --output run/\n"
+      "Long runs keep checkpoints; SIGTERM and Ctrl-C write one. The same command with --restart "
+      "goes\n"
+      "on from the newest, and ends in the same numbers as a run that was never stopped.");
   InputOptions options;
   options.add_to(program.app, "the track");
   std::string powder, output;
   int threads = omp_get_max_threads();
+  solver::RunOptions how;
+  double minutes = how.checkpoint_interval / 60;
   program.app.add_option("--powder", powder,
                          "powder bed made by meltproof-powder (same as --set powder.bed=FILE)");
   program.app.add_option("-o,--output", output, "folder for run.h5, history.csv and result.json");
   program.app.add_option("--threads", threads, "threads; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
+  program.app
+      .add_option("--checkpoint-every", minutes,
+                  "minutes of wall-clock time between checkpoints; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  program.app.add_option("--checkpoint-steps", how.checkpoint_steps,
+                         "thermal steps between checkpoints, beside those by time; 0: none");
+  program.app.add_flag("--restart", how.restart,
+                       "go on from the newest good checkpoint in the output folder; without one, "
+                       "begin");
   return program.run(argc, argv, [&] {
     solver::TrackCase track;
     Input input = solver::declare(track);
@@ -41,14 +56,17 @@ int main(int argc, char** argv) {
     for (const auto& file : input.files()) {
       provenance.add_input(file);
     }
-    const std::string name = std::filesystem::path(options.path).stem().string();
-    const auto result = solver::run_track(track, name, output, provenance, program.quiet());
+    how.name = std::filesystem::path(options.path).stem().string();
+    how.folder = output;
+    how.quiet = program.quiet();
+    how.checkpoint_interval = 60 * minutes;
+    const auto result = solver::run_track(track, how, provenance);
     if (!program.quiet()) {
       fmt::print(
           "{}: pool length {:.1f} um, width {:.1f} um, depth {:.1f} um ({}); any liquid {:.1f} um; "
           "energy closes to "
           "{:.1e}, additive mass to {:.1e}; {} steps in {:.0f} s\n",
-          name, result["pool_length_um"].get<double>(), result["pool_width_um"].get<double>(),
+          how.name, result["pool_length_um"].get<double>(), result["pool_width_um"].get<double>(),
           result["pool_depth_um"].get<double>(), result["window"].get<std::string>(),
           result["any_liquid_length_um"].get<double>(),
           result["energy_relative_error"].get<double>(),

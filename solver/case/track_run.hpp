@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -11,10 +12,21 @@
 
 namespace meltproof::solver {
 
-/// Runs the track and writes run.h5, history.csv and result.json into `folder`, each only when
-/// whole.
-/// @param name of the case, for result.json; @returns what result.json holds.
-nlohmann::json run_track(const TrackCase& track, const std::string& name,
-                         const std::filesystem::path& folder, Provenance provenance, bool quiet);
+/// How a run is carried out; none of it changes what comes out.
+struct RunOptions {
+  std::string name;  ///< of the case, for progress and result.json
+  std::filesystem::path
+      folder;  ///< for run.h5, history.csv, result.json and, meanwhile, checkpoints
+  bool quiet = false;
+  bool restart = false;              ///< go on from the newest checkpoint, if there is one
+  double checkpoint_interval = 600;  ///< s of wall-clock time between two; zero: none
+  std::size_t checkpoint_steps = 0;  ///< thermal steps between two; zero: none
+};
+
+/// Runs the track and writes run.h5, history.csv and result.json into the folder, each only when
+/// whole, and checkpoints on the way. @returns what result.json holds.
+/// @throws Stopped after SIGTERM or SIGINT, with a checkpoint written.
+/// @throws std::runtime_error naming particle, term and last good checkpoint if a number is none.
+nlohmann::json run_track(const TrackCase& track, const RunOptions& options, Provenance provenance);
 
 }  // namespace meltproof::solver

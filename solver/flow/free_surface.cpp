@@ -104,6 +104,28 @@ void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& gho
   }
 }
 
+FlowMemory FreeSurfaceFlow::memory() const {
+  FlowMemory memory;
+  for (const std::uint32_t i : liquid_) {
+    memory.acceleration.push_back(acceleration_[i]);
+    memory.shift.push_back(shift_[i]);
+    memory.area.push_back(area_[i]);
+    memory.pressure.push_back(pressure_[i]);
+  }
+  return memory;
+}
+
+void FreeSurfaceFlow::remember(const FlowMemory& memory, const LimiterCounts& limiters) {
+  for (std::size_t k = 0; k < liquid_.size(); ++k) {
+    const std::uint32_t i = liquid_[k];
+    acceleration_[i] = memory.acceleration[k];
+    shift_[i] = memory.shift[k];
+    area_[i] = memory.area[k];
+    pressure_[i] = memory.pressure[k];
+  }
+  limiters_ = limiters;
+}
+
 std::string FreeSurfaceFlow::diagnose(const Particles& particles, std::uint32_t i,
                                       const MeltProperties& properties) const {
   const auto bad = [](const Vector& v) { return !std::isfinite(v[0] + v[1] + v[2]); };

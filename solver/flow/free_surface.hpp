@@ -56,6 +56,15 @@ struct MeltProperties {
   std::vector<double> recoil;           ///< Pa
 };
 
+/// What the flow takes from one step into the next, an entry per liquid particle in the order of
+/// the particles.
+struct FlowMemory {
+  std::vector<Vector> acceleration;  ///< m s-2
+  std::vector<Vector> shift;         ///< m s-1, of the transport velocity
+  std::vector<double> area;          ///< m^(d-1)
+  std::vector<double> pressure;      ///< Pa
+};
+
 /// Counts of everything that limited a value, since the start of a run.
 struct LimiterCounts {
   std::uint64_t wall_pressure = 0;  ///< wall pressures clipped at zero, particle steps
@@ -91,6 +100,11 @@ class FreeSurfaceFlow {
   /// whenever indices have changed.
   void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
                 const NeighbourList& list, const MeltProperties& properties);
+
+  /// For a run that is stopped and continued.
+  FlowMemory memory() const;
+  /// Takes it back, once arrange() has found the same liquid particles.
+  void remember(const FlowMemory& memory, const LimiterCounts& limiters);
 
   /// Surface area of a particle, m^(d-1), see surface_area(); zero inside. Liquid particles only.
   const std::vector<double>& area() const { return area_; }

@@ -35,4 +35,11 @@ void set_lattice_moments(QuinticSpline& kernel, double spacing, int dimensions,
   kernel.operator_scale = 1 / (x2 - kernel.operator_curvature * x2_r2);
 }
 
+QuinticSpline lattice_kernel(double spacing, double smoothing_ratio, int dimensions,
+                             LatticeMoments moments) {
+  QuinticSpline kernel(smoothing_ratio * spacing, dimensions);
+  set_lattice_moments(kernel, spacing, dimensions, moments);
+  return kernel;
+}
+
 }  // namespace meltproof::solver

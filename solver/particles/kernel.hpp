@@ -94,4 +94,8 @@ enum class LatticeMoments {
 void set_lattice_moments(QuinticSpline& kernel, double spacing, int dimensions,
                          LatticeMoments moments);
 
+/// The kernel of a lattice: h = smoothing_ratio times spacing, with those moments set.
+QuinticSpline lattice_kernel(double spacing, double smoothing_ratio, int dimensions,
+                             LatticeMoments moments);
+
 }  // namespace meltproof::solver

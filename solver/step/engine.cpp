@@ -12,13 +12,6 @@
 namespace meltproof::solver {
 namespace {
 
-QuinticSpline lattice_kernel(const Particles& particles, double smoothing_ratio,
-                             LatticeMoments moments) {
-  QuinticSpline kernel(smoothing_ratio * particles.spacing, particles.dimensions);
-  set_lattice_moments(kernel, particles.spacing, particles.dimensions, moments);
-  return kernel;
-}
-
 Particles sorted(Particles particles, double smoothing_ratio) {
   sort_in_space(particles, 3 * smoothing_ratio * particles.spacing);
   return particles;
@@ -31,29 +24,19 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
       mixture_(std::move(mixture)),
       diffusivity_law_(std::move(diffusivity)),
       model_(model),
-      kernel_(lattice_kernel(particles_, model.smoothing_ratio, model.heat_moments)),
-      species_kernel_(lattice_kernel(particles_, model.smoothing_ratio, model.species_moments)),
+      kernel_(lattice_kernel(particles_.spacing, model.smoothing_ratio, particles_.dimensions,
+                             model.heat_moments)),
+      species_kernel_(lattice_kernel(particles_.spacing, model.smoothing_ratio,
+                                     particles_.dimensions, model.species_moments)),
       neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0) {
   const std::size_t n = particles_.size();
-  mobile_.assign(n, 0);
-  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
-                      &absorptivity_, &loss_area_}) {
-    field->assign(n, 0.0);
-  }
-  if (model_.flow) {
-    flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions);
-  }
-  ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
-  neighbours_.build(particles_, ghosts_, mobile_);
-  place_records();
-  if (model_.surface_conduction) {
-    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
-  }
   // Without sleep no temperature is the start's, and everybody is awake.
   start_temperature_ =
       model_.sleep_below > 0 && n > 0
           ? mixture_.temperature(particles_.enthalpy[0], particles_.concentration[0])
           : -1e9;
+  mobile_.assign(n, 0);
+  prepare();
   for_each_particle(n, [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (model_.laser || model_.surface_loss) {
@@ -63,6 +46,23 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
   check_numbers();
   if (flow_) {
     start_flow();
+  }
+}
+
+/// Fields, lists and records for the particles as they stand.
+void Engine::prepare() {
+  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
+                      &absorptivity_, &loss_area_}) {
+    field->assign(particles_.size(), 0.0);
+  }
+  if (model_.flow) {
+    flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions);
+  }
+  ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
+  neighbours_.build(particles_, ghosts_, mobile_);
+  place_records();
+  if (model_.surface_conduction) {
+    surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/neighbours.hpp"
+#include "solver/step/engine_state.hpp"
 #include "solver/step/time_step.hpp"
 #include "solver/terms/conduction.hpp"
 #include "solver/terms/laser.hpp"
@@ -54,23 +55,16 @@ struct Model {
   double freezing_fraction = 0.98;
 };
 
-/// Wall-clock seconds spent in each part of the step since the start.
-struct StepTimes {
-  double heat = 0, species = 0, surface = 0, state = 0, lists = 0, flow = 0;
-};
-
-/// Energies since the start, J.
-struct EnergyLedger {
-  double absorbed = 0, reflected = 0, missed = 0;      ///< of the laser's
-  double evaporated = 0, radiated = 0, convected = 0;  ///< lost through the surface
-  double evaporated_mass = 0;  ///< kg that the vapour would carry; the particles keep it
-};
-
 /// The particles, everything derived from them, and the clock.
 class Engine {
  public:
   /// Takes the particles over and puts them in space-filling order.
   Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model);
+  /// Goes on from a state of an engine with the same mixture, diffusivity and model: every later
+  /// number is the one that engine would have found. Not with gas around the metal.
+  Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model);
+  /// The present state, between two steps. @throws std::logic_error with gas around the metal.
+  EngineState state() const;
 
   /// Advances by the smallest limit, but not beyond `until` (s). Returns the step taken, s.
   /// @throws std::runtime_error naming particle and term if a number is no longer one.
@@ -101,6 +95,7 @@ class Engine {
   double total_additive_mass() const;  ///< sum of m C, kg
 
  private:
+  void prepare();
   void refresh(std::size_t i);
   void refresh_ghosts();
   void check_numbers() const;

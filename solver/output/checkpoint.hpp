@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run leaves behind while it is under way, so that it can go on after a crash or a stop.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/artifact.hpp"
+#include "base/provenance.hpp"
+#include "solver/output/acceptance.hpp"
+#include "solver/output/history.hpp"
+#include "solver/step/engine_state.hpp"
+
+namespace meltproof::solver {
+
+/// What a run has found so far, beside the state of its engine.
+struct RunProgress {
+  std::vector<HistoryLine> lines;  ///< of history.csv
+  std::size_t history = 0;         ///< lines at regular intervals so far
+  std::size_t snapshots = 0;       ///< in run.h5 so far
+  double beam_balance = 0;         ///< 1, largest so far
+  double start_enthalpy = 0;       ///< J
+  double start_additive = 0;       ///< kg
+  double wall_time = 0;            ///< s, of all parts of the run so far
+  NearestDistances melt;           ///< as the beam went off, once it has
+  FilledVolume melt_volume;        ///< likewise
+};
+
+/// A run between two steps.
+struct Checkpoint {
+  std::filesystem::path file;
+  EngineState engine;
+  RunProgress run;
+};
+
+/// The folder `checkpoints` beside run.h5: the last two checkpoints, each a file that is there
+/// whole or not at all and holds a SHA-256 of every field, and the snapshots that run.h5 will take
+/// in.
+class CheckpointFolder {
+ public:
+  /// @param run_folder where run.h5 goes. Nothing is made before something is written.
+  explicit CheckpointFolder(const std::filesystem::path& run_folder);
+
+  /// Writes the state, and those snapshots of `snapshots` (groups snapshots/0000 and on) that are
+  /// not in the folder yet. Older checkpoints than the one before go. @returns its file.
+  /// @throws std::runtime_error with a sentence if the disk is full; the former one stays.
+  std::filesystem::path write(const EngineState& engine, const RunProgress& run,
+                              const ArtifactWriter& snapshots, const Provenance& provenance);
+
+  /// The newest checkpoint whose fields have the checksums that it names; damaged ones are passed
+  /// over with a warning. None: no run was under way here.
+  /// @throws InputError if it was made with another input or by another revision of the code.
+  std::optional<Checkpoint> newest(const Provenance& provenance) const;
+
+  /// Copies the first `count` snapshots into run.h5. @throws InputError if one is missing.
+  void restore_snapshots(ArtifactWriter& writer, std::size_t count) const;
+
+  /// The run is complete, or begins anew: removes what this class wrote, and nothing else.
+  void clear() const;
+
+  /// The last checkpoint written or read, or "".
+  const std::filesystem::path& last() const { return last_; }
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::vector<std::filesystem::path> files(const std::string& prefix) const;
+
+  std::filesystem::path folder_;
+  mutable std::filesystem::path last_;
+};
+
+}  // namespace meltproof::solver

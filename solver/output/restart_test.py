@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run that is stopped, killed or damaged on the way ends in the same bytes as one that never was.
+
+The full physics is on: melting, flow, surface tension, recoil, freezing. With an argument "long" the run is
+killed (SIGKILL) at random moments fifty times."""
+
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+
+BIN = Path(os.environ["MELTPROOF_BIN"])
+CASE = [BIN / "meltproof-solve", "solver/cases/track_1wt.toml", "--set", "powder.surface=bare", "--set", "spacing=14 um",
+        "--set", "laser.exposure=100 us", "--set", "domain.width=224 um", "--set", "domain.depth=112 um",
+        "--set", "domain.before=84 um", "--set", "domain.behind=84 um", "--set", "output.averaging_window=50 us",
+        "--set", "output.cooling_limit=60 us", "--set", "output.frame_rate=40 kHz"]
+
+
+def fields(path):
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()}) if hasattr(item, "shape") else None)
+    return {name: content for name, content in found.items() if not name.startswith("provenance")}
+
+
+class Restart(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.place.name)
+        cls.whole = cls.root / "whole"
+        started = time.monotonic()
+        done = cls.run_case(cls.whole)
+        cls.duration = time.monotonic() - started
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    @staticmethod
+    def command(folder, *options):
+        return [str(part) for part in (*CASE, "--output", folder, *options)]
+
+    @classmethod
+    def run_case(cls, folder, *options, **more):
+        return subprocess.run(cls.command(folder, *options), capture_output=True, text=True, **more)
+
+    def stop_after(self, folder, seconds, how, *options):
+        """Starts the run and sends it a signal; the run may end before."""
+        run = subprocess.Popen(self.command(folder, *options), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            run.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            run.send_signal(how)
+        said = run.stderr.read()
+        run.stderr.close()
+        return run.wait(), said
+
+    def stop_at_a_checkpoint(self, folder, *options):
+        """Stops the run by SIGTERM as soon as it has written a checkpoint."""
+        run = subprocess.Popen(self.command(folder, "--checkpoint-steps", 40, *options), stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, text=True)
+        while not self.checkpoints(folder) and run.poll() is None:
+            time.sleep(0.002)
+        run.send_signal(signal.SIGTERM)
+        _, said = run.communicate(timeout=120)
+        return run.returncode, said
+
+    def checkpoints(self, folder):
+        return sorted((folder / "checkpoints").glob("checkpoint_*.h5"))
+
+    def assert_same(self, folder):
+        one, other = fields(self.whole / "run.h5"), fields(folder / "run.h5")
+        self.assertGreater(len(one), 60)
+        self.assertEqual(one.keys(), other.keys())
+        for name, content in one.items():
+            self.assertEqual(content, other[name], name)
+        self.assertEqual((self.whole / "history.csv").read_bytes(), (folder / "history.csv").read_bytes())
+        names = {path.name for path in folder.iterdir()}
+        self.assertEqual(names, {path.name for path in self.whole.iterdir()}, "nothing is left behind")
+
+    def test_a_stopped_run_goes_on_to_the_same_bytes_with_another_number_of_threads(self):
+        folder = self.root / "stopped"
+        status, said = self.stop_at_a_checkpoint(folder, "--threads", 1)
+        self.assertEqual(status, 5, said)
+        self.assertIn("--restart", said)
+        self.assertFalse((folder / "run.h5").exists())
+        self.assertLessEqual(len(self.checkpoints(folder)), 2)
+        done = self.run_case(folder, "--threads", 2, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from", done.stderr)
+        self.assert_same(folder)
+
+    def test_a_damaged_checkpoint_is_passed_over_for_the_one_before(self):
+        folder = self.root / "damaged"
+        self.stop_at_a_checkpoint(folder)
+        found = self.checkpoints(folder)
+        self.assertEqual(len(found), 2)
+        with h5py.File(found[-1], "r+") as file:
+            file["enthalpy"][7] += 1e-3
+        done = self.run_case(folder, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("enthalpy does not have the checksum", done.stderr)
+        self.assertIn("goes on from " + str(found[0]), done.stderr)
+        self.assert_same(folder)
+
+    def test_a_cut_file_is_passed_over_too(self):
+        folder = self.root / "cut"
+        self.stop_at_a_checkpoint(folder)
+        found = self.checkpoints(folder)
+        found[-1].write_bytes(found[-1].read_bytes()[:2000])
+        done = self.run_case(folder, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from " + str(found[0]), done.stderr)
+        self.assert_same(folder)
+
+    def test_another_input_is_refused_and_leaves_the_checkpoints_alone(self):
+        folder = self.root / "other"
+        self.stop_at_a_checkpoint(folder)
+        before = self.checkpoints(folder)
+        done = self.run_case(folder, "--restart", "--set", "laser.power=100 W")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("another input", done.stderr)
+        self.assertEqual(self.checkpoints(folder), before)
+
+    def test_without_a_checkpoint_it_begins_and_without_restart_it_begins_anew(self):
+        folder = self.root / "anew"
+        done = self.run_case(folder, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("from the beginning", done.stderr)
+        shutil.rmtree(folder)
+        self.stop_at_a_checkpoint(folder)
+        done = self.run_case(folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("goes on", done.stderr)
+        self.assert_same(folder)
+
+    def test_a_disk_without_room_stops_the_run_with_a_sentence_and_keeps_the_checkpoint_before(self):
+        folder = self.root / "full"
+        self.stop_at_a_checkpoint(folder)
+        before = self.checkpoints(folder)
+        # No file may grow to what a checkpoint needs: writing it fails as on a full disk.
+        limit = before[-1].stat().st_size - 4096
+
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+        done = self.run_case(folder, "--restart", "--checkpoint-steps", 20, preexec_fn=small_files)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("cannot be written", done.stderr)
+        self.assertIn("the one before it stands", done.stderr)
+        self.assertEqual(self.checkpoints(folder), before)
+        self.assertEqual(self.run_case(folder, "--restart").returncode, 0)
+        self.assert_same(folder)
+
+    @unittest.skipUnless("long" in sys.argv, "kills the run fifty times: only with the argument long")
+    def test_killed_fifty_times_at_random_it_ends_in_the_same_bytes(self):
+        seed = 20261123
+        moments = random.Random(seed)
+        folder = self.root / "killed"
+        kills = 0
+        while kills < 50:
+            # Short enough that most runs do not end; each loses at most 10 steps.
+            status, said = self.stop_after(folder, moments.uniform(0.02, 0.3) * self.duration, signal.SIGKILL,
+                                           "--restart", "--checkpoint-steps", 10)
+            if status == 0:
+                self.assert_same(folder)
+                shutil.rmtree(folder)
+                continue
+            self.assertEqual(status, -signal.SIGKILL, said)
+            kills += 1
+        done = self.run_case(folder, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_same(folder)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
