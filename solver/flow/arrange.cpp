@@ -93,7 +93,12 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
         here ? MotionRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0} : MotionRecord{};
     surface_[i] = here ? SurfaceRecord{at[0], at[1], at[2], 0, 0, 0, 0, 0} : SurfaceRecord{};
     force_[i] = ForceRecord{};
+    // What a particle was when it last had a role must not come back with the next one.
+    if (role_[i] == 0) {
+      colour_[i] = {};
+    }
     if (role_[i] != 1) {
+      density_gradient_[i] = {};
       area_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
       normal_[i] = acceleration_[i] = shift_[i] = tension_gradient_[i] = {};
     }

@@ -64,10 +64,10 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   const std::vector<Vector> now = particles_.position;
   particles_.position = built_at_;
   prepare();
+  particles_.position = now;
   if (flow_) {
     flow_->arrange(particles_, ghosts_, neighbours_.list(), true);
   }
-  particles_.position = now;
   place_records();
   for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
