@@ -67,10 +67,10 @@ class Restart(unittest.TestCase):
         return run.wait(), said
 
     def stop_at_a_checkpoint(self, folder, *options):
-        """Stops the run by SIGTERM as soon as it has written a checkpoint."""
-        run = subprocess.Popen(self.command(folder, "--checkpoint-steps", 40, *options), stdout=subprocess.DEVNULL,
+        """Stops the run by SIGTERM as soon as it has written two checkpoints."""
+        run = subprocess.Popen(self.command(folder, "--checkpoint-steps", 25, *options), stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True)
-        while not self.checkpoints(folder) and run.poll() is None:
+        while len(self.checkpoints(folder)) < 2 and run.poll() is None:
             time.sleep(0.002)
         run.send_signal(signal.SIGTERM)
         _, said = run.communicate(timeout=120)
