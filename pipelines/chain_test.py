@@ -104,14 +104,16 @@ class Chain(unittest.TestCase):
 
     def test_a_line_through_the_track_shows_the_additive(self):
         place = self.root / "line.json"
-        done = run("linescan", self.tracks[2] / "run.h5", "--start", "35 um, -60 um, 5 um", "--end",
-                   "35 um, 60 um, 5 um", "--output", place)
+        done = run("linescan", self.tracks[2] / "run.h5", "--start", "50 um, -60 um, -10 um", "--end",
+                   "50 um, 60 um, -10 um", "--output", place)
         self.assertEqual(done.returncode, 0, done.stderr)
         line = json.loads(place.read_text())
         self.assertEqual(line["status"], "pending")
         concentration = line["simulated"]["concentration"]
-        self.assertNotIn(None, concentration)  # metal all along: the track is closed there
-        self.assertGreater(max(concentration), 0.01)
+        # Below the plate's surface a line may meet a pore, which has no concentration, but is metal else.
+        metal = [value for value in concentration if value is not None]
+        self.assertGreater(len(metal), 0.75 * len(concentration))
+        self.assertGreater(max(metal), 1e-3)
 
 
 class Studies(unittest.TestCase):
