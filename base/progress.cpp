@@ -20,9 +20,10 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-Progress::Progress(std::string what, double total)
+Progress::Progress(std::string what, double total, double before)
     : what_(std::move(what)),
       total_(total),
+      before_(before),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
       last_(start_) {}
@@ -40,8 +41,9 @@ void Progress::update(double done, const std::string& detail) {
   shown_ = true;
   const double share = total_ > 0 ? std::min(1.0, done / total_) : 0;
   // The time left assumes a steady rate, which holds once a run is under way.
-  const std::string left = share > 0.005
-                               ? duration_text(since_start.count() * (1 - share) / share) + " left"
+  const double here = total_ > 0 ? share - before_ / total_ : 0;
+  const std::string left = here > 0.005
+                               ? duration_text(since_start.count() * (1 - share) / here) + " left"
                                : "estimating";
   fmt::print(stderr, "{}{}: {:5.1f} %, {}{}{}{}", terminal_ ? "\r\x1b[K" : "", what_, 100 * share,
              left, detail.empty() ? "" : "; ", detail, terminal_ ? "" : "\n");

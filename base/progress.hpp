@@ -11,8 +11,9 @@ namespace meltproof {
 /// ten seconds otherwise. Silent for work that ends within a second.
 class Progress {
  public:
-  /// @param what what is being done, for example "solve"; @param total the amount of work.
-  Progress(std::string what, double total);
+  /// @param what what is being done, for example "solve"; @param total the amount of work;
+  /// @param before how much of it was done earlier, by a run that this one continues.
+  Progress(std::string what, double total, double before = 0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -25,7 +26,7 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
   std::string what_;
-  double total_;
+  double total_, before_;
   bool terminal_, shown_ = false, finished_ = false;
   Clock::time_point start_, last_;
 };

@@ -87,7 +87,7 @@ class TrackRun {
     }
     {
       const StopRequest stop;
-      Progress progress(options_.name, t_.exposure);
+      Progress progress(options_.name, t_.exposure, std::min(engine_->time(), t_.exposure));
       while (engine_->time() < end() && advance(writer, stop, progress)) {
       }
     }

@@ -147,6 +147,11 @@ std::string FreeSurfaceFlow::diagnose(const Particles& particles, std::uint32_t 
   if (!std::isfinite(properties.viscosity[i])) {
     return "the viscosity";
   }
+  const double shifted = std::hypot(shift_[i][0], shift_[i][1], shift_[i][2]);
+  const Vector& v = particles.velocity[i];
+  if (!(shifted <= std::hypot(v[0], v[1], v[2]))) {
+    return fmt::format("the transport velocity, {:.4g} m/s", shifted);
+  }
   return fmt::format("the pressure and viscous forces (pressure {:.4g} Pa, density {:.4g} kg/m3)",
                      pressure_[i], particles.density[i]);
 }

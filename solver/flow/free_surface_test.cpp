@@ -253,7 +253,7 @@ TEST(FreeSurfaceFlow, PressureAndViscosityMoveNoDropAsAWhole) {
 }
 
 // Curvature times area is no sum over pairs, so it may push a drop as a whole; it must do so by
-// little. A drop that oscillates gathers a speed below a thousandth of its surface's.
+// little: a drop that oscillates gathers a speed below a fiftieth of its surface's.
 TEST(FreeSurfaceFlow, SurfaceTensionHardlyMovesADropAsAWhole) {
   const VerificationCase c = melt_case();
   Engine engine = make_drop(c, surface_model(c), 8 * dx, false);

@@ -190,7 +190,7 @@ std::filesystem::path CheckpointFolder::write(const EngineState& engine, const R
       piece.commit(provenance);
     }
   }
-  const auto place = folder_ / fmt::format("checkpoint_{:012}.h5", engine.steps);
+  auto place = folder_ / fmt::format("checkpoint_{:012}.h5", engine.steps);
   ArtifactWriter writer(place, kind, true);
   nlohmann::json numbers;
   each_number(engine, [&](const char* name, const auto& value) { numbers[name] = value; });

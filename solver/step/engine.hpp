@@ -119,6 +119,8 @@ class Engine {
   void advance_flow(double dt, int steps);
   void advance_gas(double dt);
   double largest_speed() const;
+  double farthest_moved() const;
+  [[noreturn]] void report_unstable(std::uint32_t particle, double moved) const;
 
   Particles particles_;
   Mixture mixture_;

@@ -2,6 +2,9 @@
 // How the engine lets the melt flow between two thermal steps.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "solver/particles/block_sum.hpp"
 #include "solver/step/engine.hpp"
@@ -33,12 +36,7 @@ void Engine::start_flow() {
 /// The closed flow moves the melt; the free surface's interface then says how much of it is bare.
 void Engine::advance_gas(double dt) {
   flow_count_ += static_cast<std::size_t>(gas_->advance(particles_, melt_, dt));
-  double farthest = 0;
-  for (const std::uint32_t i : flow_->liquid()) {
-    const Vector &a = particles_.position[i], &b = built_at_[i];
-    farthest = std::max(farthest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
-  }
-  if (farthest > neighbours_.skin() / 2) {
+  if (farthest_moved() > neighbours_.skin() / 2) {
     rebuild_lists(false);
   }
   flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
@@ -63,6 +61,44 @@ double Engine::largest_speed() const {
     square = std::max(square, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   }
   return std::sqrt(square);
+}
+
+/// How far a liquid particle has come since the lists were made, m.
+/// @throws std::runtime_error if one was thrown out, or its place is no number: asked for its
+/// neighbours, such a place would ask for all the memory of the machine.
+double Engine::farthest_moved() const {
+  double square = 0;
+  // The step's limits allow half a spacing.
+  const double most = particles_.spacing * particles_.spacing;
+  for (const std::uint32_t i : flow_->liquid()) {
+    const Vector &a = particles_.position[i], &b = built_at_[i];
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    const double moved = x * x + y * y + z * z;
+    // False for what is no number, too.
+    if (!(moved <= most)) {
+      report_unstable(i, std::sqrt(moved));
+    }
+    square = std::max(square, moved);
+  }
+  return std::sqrt(square);
+}
+
+void Engine::report_unstable(std::uint32_t particle, double moved) const {
+  // What is no number spreads from where it arose: there the density is none, too.
+  for (const std::uint32_t i : flow_->liquid()) {
+    if (!std::isfinite(particles_.density[i])) {
+      particle = i;
+      break;
+    }
+  }
+  const Vector& at = built_at_[particle];
+  throw std::runtime_error(fmt::format(
+      "step {}, time {:.6g} s, particle {}, last listed at ({:.3g}, {:.3g}, {:.3g}) um: it moved "
+      "by {:.3g} spacings within a few steps, so the flow is unstable; the force behind it: {}. A "
+      "larger flow.viscosity_factor or flow.sound_speed, or the default flow.clumping_cure, may "
+      "hold it",
+      steps_, time_, particles_.identity[particle], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2],
+      moved / particles_.spacing, flow_->diagnose(particles_, particle, melt_)));
 }
 
 /// Melts and freezes; takes out what left the domain. @returns whether any phase changed.
@@ -231,14 +267,9 @@ void Engine::advance_flow(double dt, int steps) {
   for (int s = 0; s < steps; ++s) {
     flow_->kick_and_drift(particles_, small);
     ++flow_count_;
-    double farthest = 0;
-    for (const std::uint32_t i : flow_->liquid()) {
-      const Vector &a = particles_.position[i], &b = built_at_[i];
-      const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-      farthest = std::max(farthest, x * x + y * y + z * z);
-    }
+    const double farthest = farthest_moved();
     watch.lap(times_.flow);
-    if (farthest > allowed * allowed) {
+    if (farthest > allowed) {
       rebuild_lists(false);
       watch.lap(times_.lists);
     }
