@@ -63,13 +63,14 @@ InputTable flow_table(FlowInput& f) {
                                       .about = "delta of Molteni and Colagrossi.",
                                       .minimum = 0,
                                       .maximum = 1})
-      .quantity(s.density_relaxation,
-                {.name = "density_relaxation",
-                 .unit = "1",
-                 .about = "N: inside the melt the density goes to the sum over the particles "
-                          "within N smoothing lengths' travel of sound; 0: never.",
-                 .minimum = 0,
-                 .maximum = 1e6})
+      .quantity(
+          s.density_relaxation,
+          {.name = "density_relaxation",
+           .unit = "1",
+           .about = "N: densities go to the sum over the particles, at the surface over its part "
+                    "within the metal, within N smoothing lengths' travel of sound; 0: never.",
+           .minimum = 0,
+           .maximum = 1e6})
       .text(f.diffusion_form,
             {.name = "density_diffusion_form",
              .about = "plain: flattens pressure profiles too, and the melt sinks in; corrected: "
@@ -163,6 +164,12 @@ std::vector<std::string> flow_warnings(const FlowInput& f, const Mixture& mixtur
         "the sound speed of {:.4g} m/s lets pressures of {:.3g} Pa compress the melt by {:.1f} %; "
         "{:.0f} m/s keeps that at 1 %",
         f.settings.sound_speed, most, 100 * compression(most), speed_for(most, 0.01)));
+  }
+  if (f.settings.density_relaxation > 0 && f.settings.density_relaxation < 1) {
+    throw InputError(
+        fmt::format("flow.density_relaxation = {:.4g}: the density would go to its sum faster than "
+                    "sound crosses a particle, which no step resolves; 0 (never), or 1 and more",
+                    f.settings.density_relaxation));
   }
   if (f.settings.viscosity_factor < 5 && f.settings.artificial_viscosity < 0.1) {
     result.push_back(fmt::format(

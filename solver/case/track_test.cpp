@@ -86,6 +86,15 @@ TEST(TrackCase, ASpacingThatCannotHoldTheBeamIsRefused) {
   EXPECT_FALSE(warnings(t, paper_mixture()).empty());
 }
 
+TEST(TrackCase, ADensityThatGoesToItsSumFasterThanSoundIsRefused) {
+  TrackCase t = small_case();
+  t.spacing = 14e-6;
+  t.flow.settings.density_relaxation = 1;
+  warnings(t, paper_mixture());
+  t.flow.settings.density_relaxation = 0.5;
+  EXPECT_THROW(warnings(t, paper_mixture()), InputError);
+}
+
 TEST(MeltPool, ASphericalPoolIsMeasuredFinerThanTheSpacing) {
   const double dx = 10e-6, radius = 57.3e-6;
   Particles particles;

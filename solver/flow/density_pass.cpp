@@ -106,7 +106,8 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
       const double sum = (sum_lanes(summed) + particles.mass[i] * at_centre) / lattice_sum_;
       const double strength =
           std::hypot(colour_[i][0], colour_[i][1], colour_[i][2]) * kernel_.smoothing_length;
-      rate += relaxation * density_excess(sum, own.density, strength / interface_threshold);
+      rate += relaxation * density_excess(sum / depth_.covered(strength * reference / sum),
+                                          own.density, reference);
     }
     particles.density[i] += dt * rate;
   });

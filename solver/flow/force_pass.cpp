@@ -54,8 +54,7 @@ void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
   }
 }
 
-void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list,
-                             const MeltProperties& properties) {
+void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list) {
   const ForceRecord* all = force_.data();
   const QuinticSpline half(kernel_.smoothing_length / 2, dimensions_);
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
@@ -80,24 +79,25 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
       const Lane density = where_positive(other, other, Lane(own.density));
       const Lane viscosity =
           where_positive(other, gather(all, j, &ForceRecord::viscosity), Lane(own.viscosity));
-      const Lane weight = (own_square + volume * volume) * kernel_.slope(r) / r;
+      const Lane squares = own_square + volume * volume, slope_over_r = kernel_.slope(r) / r;
       Lane pressure = pressure_pair(Lane(own.pressure), Lane(own.density),
                                     gather(all, j, &ForceRecord::pressure), density);
       if (repel) {
         pressure += repulsion_pair(kernel_.value(r) * over_onset, settings_.repulsion);
       }
-      const Lane softened = r2 / (r2 + kernel_.regularisation);
+      const Lane approach = dx * ux + dy * uy + dz * uz;
       if (artificial > 0) {
-        const Lane approach = positive_part(-(dx * ux + dy * uy + dz * uz));
-        pressure += artificial * own.density * approach / (r2 + kernel_.regularisation);
+        pressure +=
+            artificial * own.density * positive_part(-approach) / (r2 + kernel_.regularisation);
       }
-      const Lane normal = weight * pressure;
-      const Lane shear = weight * softened * viscosity_pair(Lane(own.viscosity), viscosity);
-      ax += shear * ux - normal * dx;
-      ay += shear * uy - normal * dy;
-      az += shear * uz - normal * dz;
+      const Lane rub = viscosity_pair(Lane(own.viscosity), viscosity) *
+                       central_viscosity(slope_over_r, kernel_.second_moment, dimensions_);
+      const Lane along = squares * (rub * approach - slope_over_r * pressure);
+      ax += along * dx;
+      ay += along * dy;
+      az += along * dz;
       if (transport) {
-        const Lane push = (own_square + volume * volume) * half.slope(r) / r;
+        const Lane push = squares * half.slope(r) / r;
         sx += push * dx;
         sy += push * dy;
         sz += push * dz;
@@ -110,17 +110,18 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
       const double background = std::min(10 * std::abs(own.pressure), settings_.transport_pressure);
       shift_[i] = {-background * sum_lanes(sx) / mass, -background * sum_lanes(sy) / mass,
                    -background * sum_lanes(sz) / mass};
+      // Beyond the surface nothing pushes back: only along it may it even out places.
+      const Vector& out = normal_[i];
+      const double across = shift_[i][0] * out[0] + shift_[i][1] * out[1] + shift_[i][2] * out[2];
+      for (std::size_t d = 0; d < 3; ++d) {
+        shift_[i][d] -= across * out[d];
+      }
     }
-    double inward = 0;
-    if (settings_.surface_tension) {
-      inward += properties.surface_tension[i] * curvature_[i];
-    }
-    if (settings_.recoil) {
-      inward += properties.recoil[i];
-    }
-    const double area_over_mass = area_[i] / mass;
+    const double inward = load_[i].pressure;
+    const double area_over_mass = area_[i] / mass, volume_over_mass = 1 / own.density;
     for (std::size_t d = 0; d < 3; ++d) {
-      a[d] += settings_.gravity[d] - pull_[i] / mass * inward * normal_[i][d];
+      a[d] += settings_.gravity[d] - pull_[i] / mass * inward * normal_[i][d] -
+              volume_over_mass * load_gradient_[i][d];
       if (settings_.marangoni && area_[i] > 0) {
         a[d] += area_over_mass * tension_gradient_[i][d];
       }

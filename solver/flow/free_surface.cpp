@@ -35,7 +35,7 @@ void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
     const std::uint32_t i = liquid_[k];
     for (std::size_t d = 0; d < 3; ++d) {
       particles.velocity[i][d] += dt / 2 * acceleration_[i][d];
-      particles.position[i][d] += dt * (particles.velocity[i][d] + shift_[i][d]);
+      particles.position[i][d] += dt * (particles.velocity[i][d] + dt * shift_[i][d]);
     }
   });
 }
@@ -44,6 +44,7 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
                                const NeighbourList& list, const MeltProperties& properties) {
   write_surface(particles, ghosts, list, properties);
   curvatures(list);
+  loads(ghosts, list, properties);
   const std::size_t n = particles.size();
   const double stiffness = settings_.sound_speed * settings_.sound_speed;
   for_each_particle(liquid_.size(), [&](std::size_t k) {
@@ -78,7 +79,7 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
     }
   }
   walls(ghosts);
-  forces(particles, list, properties);
+  forces(particles, list);
 }
 
 void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& ghosts,
@@ -91,7 +92,6 @@ void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& gho
     const std::uint32_t i = liquid_[k];
     for (std::size_t d = 0; d < 3; ++d) {
       particles.velocity[i][d] += dt / 2 * acceleration_[i][d];
-      shift_[i][d] *= dt;
     }
   });
   limiters_.particle_steps += liquid_.size();

@@ -35,16 +35,16 @@ struct FlowSettings {
   double sound_speed = 50;         ///< c, m s-1: p = c^2 (rho - rho0)
   double density_diffusion = 0.1;  ///< delta of Molteni & Colagrossi
   DensityDiffusion diffusion_form = DensityDiffusion::corrected;
-  /// N of density_excess(): the density of the interior goes to the particles' own sum within N
-  /// smoothing lengths' travel of sound; zero: never.
-  double density_relaxation = 0;
+  /// N of density_excess(): densities go to the particles' own sum within N smoothing lengths'
+  /// travel of sound; zero: never.
+  double density_relaxation = 10;
   double viscosity_factor = 20;     ///< on the material's real viscosity (paper, note of Table A2)
   double artificial_viscosity = 0;  ///< alpha of Monaghan
   Vector gravity{0, 0, -9.81};      ///< m s-2
   bool surface_tension = true, marangoni = true, recoil = true;
   ClumpingCure cure = ClumpingCure::repulsion;
-  double repulsion = 2e4;           ///< Pa, k of repulsion_pair()
-  double repulsion_distance = 1;    ///< d of repulsion_pair(), in spacings
+  double repulsion = 1e5;           ///< Pa, k of repulsion_pair()
+  double repulsion_distance = 0.8;  ///< d of repulsion_pair(), in spacings
   double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
   double skin = 0.5;                ///< of the Verlet lists, in spacings
 };
@@ -60,7 +60,7 @@ struct MeltProperties {
 /// the particles.
 struct FlowMemory {
   std::vector<Vector> acceleration;  ///< m s-2
-  std::vector<Vector> shift;         ///< m s-1, of the transport velocity
+  std::vector<Vector> shift;         ///< m s-2, times the step the transport velocity's share
   std::vector<double> area;          ///< m^(d-1)
   std::vector<double> pressure;      ///< Pa
 };
@@ -138,6 +138,11 @@ class FreeSurfaceFlow {
     double tension = 0;  // N m-1
     double depth = 0;    // m, below the surface; zero where there is no interface
   };
+  /// What pushes on the surface.
+  struct alignas(16) LoadRecord {
+    double pressure = 0;  // Pa, capillary and recoil
+    double bare = 0;      // 1 for melt of the interface, else 0
+  };
   /// Forces; two cache lines.
   struct alignas(64) ForceRecord {
     double x = void_position, y = void_position, z = void_position, vx = 0, vy = 0, vz = 0;
@@ -155,9 +160,10 @@ class FreeSurfaceFlow {
                      const NeighbourList& list, const MeltProperties& properties);
   void leave_disorder_out(const NeighbourList& list);
   void curvatures(const NeighbourList& list);
+  void loads(const std::vector<Ghost>& ghosts, const NeighbourList& list,
+             const MeltProperties& properties);
   void walls(const std::vector<Ghost>& ghosts);
-  void forces(const Particles& particles, const NeighbourList& list,
-              const MeltProperties& properties);
+  void forces(const Particles& particles, const NeighbourList& list);
 
   FlowSettings settings_;
   QuinticSpline kernel_;
@@ -170,12 +176,14 @@ class FreeSurfaceFlow {
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;
+  std::vector<LoadRecord> load_;
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;
   double lattice_sum_ = 1;  // sum V W of the undisturbed lattice
   double outermost_depth_;  // over h
   std::vector<double> area_, curvature_, pressure_;
+  std::vector<Vector> load_gradient_;  // Pa m-1, of the load along the surface, the missing part
   std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on
   std::vector<std::uint8_t> limited_, disorder_;
   LimiterCounts limiters_;

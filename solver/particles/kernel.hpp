@@ -17,6 +17,7 @@ struct QuinticSpline {
   double normalisation = 0;       ///< a_d / h^d, m^-d
   double inverse_length = 0;      ///< 1/h, 1/m
   double regularisation = 0;      ///< (0.1 h)^2, m2: keeps F finite for particles that meet
+  double second_moment = 0;       ///< <r^2> = int W r^2 dV, m2
   double operator_scale = 1;      ///< s in F, see set_lattice_moments()
   double operator_curvature = 0;  ///< k in F, m^-2
 
@@ -27,12 +28,15 @@ struct QuinticSpline {
     switch (dimensions) {
       case 1:
         normalisation = 1 / (120 * h);
+        second_moment = h * h / 2;
         break;
       case 2:
         normalisation = 7 / (478 * pi * h * h);
+        second_moment = h * h * 2771 / 2868;
         break;
       case 3:
         normalisation = 1 / (120 * pi * h * h * h);
+        second_moment = h * h * 7 / 5;
         break;
       default:
         throw std::logic_error("a kernel has one, two or three dimensions");

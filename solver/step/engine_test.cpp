@@ -280,6 +280,25 @@ TEST(Flow, ANumberThatIsNoneNamesParticleAndTerm) {
   }
 }
 
+TEST(Flow, AParticleThatIsThrownOutStopsTheRunAndIsNamed) {
+  Engine engine = melt_block(2000);
+  const std::size_t n = engine.particles().size();
+  std::vector<Vector> velocity(n);
+  std::vector<double> density(n, engine.mixture().density(0));
+  density[640] = 1e9;
+  engine.set_state(velocity, density);
+  try {
+    engine.step(1e-6);
+    FAIL() << "a pressure of 2e12 Pa went unnoticed";
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    for (const char* part :
+         {"particle ", "spacings within a few steps", "pressure", "may hold it"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+    }
+  }
+}
+
 TEST(Flow, SolidStandsStillAndMeltFreezesOntoIt) {
   Engine engine = melt_block(2000);
   std::size_t liquid = 0;

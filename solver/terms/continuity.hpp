@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+
 #include "solver/particles/lanes.hpp"
 
 namespace meltproof::solver {
@@ -28,13 +30,15 @@ T density_diffusion_pair(const T& density_i, const T& density_j, const T& smooth
 }
 
 /// **Density relaxation**: d rho_i/dt += w c/(N h) (rho_sum - rho_i), rho_sum = sum_j m_j W_ij over
-/// that of the undisturbed lattice. Continuity alone forgets how many particles there are in a
-/// place: what its errors add up to is volume that the melt loses or wins. Only inside, where the
-/// sum misses no neighbour: w falls from one to zero as the colour gradient goes from none to the
-/// interface's threshold. Returns w (rho_sum - rho_i), kg m-3.
-/// @param colour the colour gradient over that threshold.
-inline double density_excess(double summed, double density, double colour) {
-  return colour < 1 ? (1 - colour) * (summed - density) : 0;
+/// that of the undisturbed lattice and over the share of the kernel that lies within the metal, see
+/// SurfaceDepth::covered(). Continuity alone forgets how many particles there are in a place, and
+/// in an outermost layer it hardly notices when they are pressed together or drawn apart. Returns
+/// w (rho_sum - rho_i), kg m-3; w falls from one to zero between 0.85 and 0.7 of the density at
+/// rest: what is thinner is spray, whose few neighbours say nothing about its density.
+inline double density_excess(double summed, double density, double reference) {
+  constexpr double whole = 0.85, none = 0.7;
+  const double weight = std::clamp((summed / reference - none) / (whole - none), 0.0, 1.0);
+  return weight * (summed - density);
 }
 
 /// **Repulsion** against clumping under tension at a free surface: an additional pair pressure

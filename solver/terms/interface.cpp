@@ -51,6 +51,43 @@ SurfaceDepth::SurfaceDepth(int dimensions) {
     depth_.push_back(depth);
     per_curvature_.push_back(depth * here / (2 * std::abs(slope)));
   }
+  // Particles stand in layers a spacing apart, the surface half a spacing above the outermost: a
+  // sum over them is the integral plus the terms of Euler and Maclaurin's midpoint rule, here to
+  // the fourth order. (With the integrals alone the outermost layer of a lattice seems 3.4 % too
+  // dense.)
+  const auto w = [&](double q) { return plane_colour_gradient(std::abs(q), dimensions); };
+  constexpr int fine = 1000;
+  constexpr double thin = 3.0 / fine, by = 0.05, second = 1.0 / 24, fourth = 7.0 / 5760;
+  std::vector<double> ratio(fine + 1), share(fine + 1);
+  double filled = 0.5;
+  for (int k = 0; k <= fine; ++k) {
+    const double q = thin * k, here = w(q), above = w(q + by), below = w(q - by);
+    const double above2 = w(q + 2 * by), below2 = w(q - 2 * by);
+    filled += k > 0 ? thin * (w(q - thin) + 4 * w(q - thin / 2) + here) / 6 : 0;
+    share[k] = filled - second * (above - below) / (2 * by) +
+               fourth * (above2 - 2 * above + 2 * below - below2) / (2 * std::pow(by, 3));
+    const double strength =
+        here - second * (above - 2 * here + below) / (by * by) +
+        fourth * (above2 - 4 * above + 6 * here - 4 * below + below2) / std::pow(by, 4);
+    ratio[k] = strength / share[k];
+  }
+  ratio_step_ = ratio[0] / (entries - 1);
+  std::size_t at = fine;
+  for (std::size_t k = 0; k < entries; ++k) {
+    const double wanted = ratio_step_ * static_cast<double>(k);
+    while (at > 0 && ratio[at] < wanted) {
+      --at;
+    }
+    covered_.push_back(share[at]);
+  }
+}
+
+double SurfaceDepth::covered(double strength_over_sum) const {
+  const double last = static_cast<double>(covered_.size() - 1);
+  const double at = std::clamp(strength_over_sum / ratio_step_, 0.0, last);
+  const auto k = static_cast<std::size_t>(std::min(at, last - 1));
+  const double share = at - static_cast<double>(k);
+  return covered_[k] + share * (covered_[k + 1] - covered_[k]);
 }
 
 double SurfaceDepth::look_up(const std::vector<double>& table, double strength) const {

@@ -30,11 +30,17 @@ class SurfaceDepth {
   /// the depth is s + kappa s W1/(2 |dW1/ds|).
   double per_curvature(double strength) const { return look_up(per_curvature_, strength); }
 
+  /// Which share of the kernel lies within the metal, where the colour gradient times h is
+  /// `strength` times the share that the neighbours fill: both grow alike when the metal is
+  /// compressed, so their ratio tells the depth and not the density. Between a half and one.
+  double covered(double strength_over_sum) const;
+
  private:
   double look_up(const std::vector<double>& table, double strength) const;
 
-  double step_;
+  double step_, ratio_step_;
   std::vector<double> depth_, per_curvature_;  // at strength 0, step_, 2 step_, ...
+  std::vector<double> covered_;                // at ratio 0, ratio_step_, ...
 };
 
 /// Below this colour gradient times h a particle takes no part in the interface: the disorder of a
@@ -75,6 +81,14 @@ double surface_curvature(const InterfaceSums& sums, int dimensions, double per_c
 inline double surface_area(double pull, double curvature, double depth) {
   const double half = curvature * depth / 2;
   return half > 0 ? pull * (1 + half) : pull / (1 - half);
+}
+
+/// **Which share of a gradient along the surface the missing neighbours would carry**: 1 +
+/// `spread`/ (d - 1) with spread = sum_j V_j F |r_ij - (r_ij . n) n|^2, minus d - 1 where the
+/// support is whole; 0.22 in the outermost layer of a lattice. At most a half, which is a particle
+/// on the surface.
+inline double missing_support(double spread, int dimensions) {
+  return std::clamp(1 + spread / (dimensions - 1), 0.0, 0.5);
 }
 
 /// **Gradient along the surface** of the quantity s: M^-1 sum F r_ij (s_i - s_j), exact for a
