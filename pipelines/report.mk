@@ -31,7 +31,7 @@ $(FIGURE_FOLDER)/%.svg: pipelines/figures/%.py $(LOOK) | packages
 CIRCUMSTANCES := $(WORK)/circumstances.json
 $(CIRCUMSTANCES): always | packages
 	@mkdir -p $(@D)
-	@$(PYTHON) pipelines/report/circumstances.py --profile $(PROFILE) --spacing '$(SPACING)' --output $@
+	@$(PYTHON) pipelines/report/circumstances.py --profile $(PROFILE) --spacing '$(SPACINGS)' --output $@
 
 REPORT := reports/validation.pdf
 REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)

@@ -5,7 +5,11 @@
 SPACING_smoke := 14 um
 SPACING_desk := 10 um
 SPACING_paper := 2 um
+# CBM-A is 4 ms long: at 10 um it alone takes as long as all other tracks together.
+SPACING_desk_cbm_a := 14 um
 SPACING := $(SPACING_$(PROFILE))
+SPACINGS := $(SPACING)$(if $(SPACING_$(PROFILE)_cbm_a), (CBM-A: $(SPACING_$(PROFILE)_cbm_a)))
+spacing_of = $(or $(SPACING_$(PROFILE)_$(1)),$(SPACING))
 
 POWDER_TRACKS := 0wt 1wt 5wt
 # CBM-A, 4 ms long, alone takes longer than the rest of the smoke profile together.
@@ -34,8 +38,8 @@ define solve
 $(WORK)/track_$(1)/run.h5 $(WORK)/track_$(1)/history.csv $(WORK)/track_$(1)/result.json &: \
     solver/cases/track_$(1).toml $(2) $(MATERIALS) $(BIN)/meltproof-solve
 	@mkdir -p $(WORK)/track_$(1)
-	@$(STAGE) 'track $(1), spacing $(SPACING)' $(BIN)/meltproof-solve $$< --output $(WORK)/track_$(1) \
-	  --threads $(THREADS) --set spacing="$(SPACING)" $(2:%=--powder %)
+	@$(STAGE) 'track $(1), spacing $(spacing_of)' $(BIN)/meltproof-solve $$< --output $(WORK)/track_$(1) \
+	  --threads $(THREADS) --set spacing="$(spacing_of)" $(2:%=--powder %)
 endef
 $(foreach track,$(POWDER_TRACKS),$(eval $(call solve,$(track),$(WORK)/powder_$(track)/powder.h5)))
 $(foreach track,$(BARE_TRACKS),$(eval $(call solve,$(track),)))

@@ -170,6 +170,25 @@ TEST(Interface, TheGradientOfALinearFieldIsExactOnAnyNeighbours) {
   }
 }
 
+// Layers of the lattice below a plane surface, and the whole lattice.
+TEST(Interface, TheOutermostLayerLacksAFifthOfAGradientAlongIt) {
+  const QuinticSpline kernel(1, 3);
+  for (const int layer : {0, 1, 3}) {
+    double spread = 0;
+    for (int i = -3; i <= 3; ++i) {
+      for (int j = -3; j <= 3; ++j) {
+        for (int k = -3; k <= layer; ++k) {
+          const double r2 = i * i + j * j + k * k;
+          spread += kernel.gradient_factor(r2) * (i * i + j * j);
+        }
+      }
+    }
+    EXPECT_NEAR(missing_support(spread, 3), layer == 0 ? 0.22 : layer == 1 ? 0.007 : 0.005, 0.005);
+  }
+  EXPECT_EQ(missing_support(-0.5, 3), 0.5);
+  EXPECT_EQ(missing_support(-2.1, 3), 0) << "never pushes the other way";
+}
+
 // By 2 |grad c| V alone the sphere has 5.5 % too little, the circle 1.9 %.
 TEST(Interface, ADropHasTheAreaOfItsSphere) {
   for (const std::int64_t dimensions : {2, 3}) {

@@ -133,6 +133,17 @@ class Restart(unittest.TestCase):
         self.assertIn("another input", done.stderr)
         self.assertEqual(self.checkpoints(folder), before)
 
+    def test_a_checkpoint_of_another_revision_is_refused(self):
+        folder = self.root / "revision"
+        self.stop_at_a_checkpoint(folder)
+        for place in self.checkpoints(folder):
+            with h5py.File(place, "r+") as file:
+                file["provenance"].attrs["revision"] = "0123456789ab"
+        done = self.run_case(folder, "--restart")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("was made by revision 0123456789ab", done.stderr)
+        self.assertIn("leave out --restart to begin anew", done.stderr)
+
     def test_without_a_checkpoint_it_begins_and_without_restart_it_begins_anew(self):
         folder = self.root / "anew"
         done = self.run_case(folder, "--restart")
