@@ -71,7 +71,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     field->resize(n, 0.0);
   }
   for (auto* field :
-       {&colour_, &normal_, &load_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
+       {&colour_, &normal_, &missing_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
     field->resize(n, Vector{});
   }
   limited_.assign(n, 0);
@@ -84,7 +84,6 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
   motion_.resize(all);
   density_gradient_.resize(all);
   surface_.resize(all);
-  load_.resize(all);
   force_.resize(all);
   // One thread: an index may stand in the list twice.
   for (const std::uint32_t i : changed) {
@@ -101,9 +100,8 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     }
     if (role_[i] != 1) {
       density_gradient_[i] = {};
-      load_[i] = {};
       area_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
-      normal_[i] = acceleration_[i] = shift_[i] = load_gradient_[i] = tension_gradient_[i] = {};
+      normal_[i] = acceleration_[i] = shift_[i] = missing_gradient_[i] = tension_gradient_[i] = {};
     }
     if (role_[i] == 2) {
       force_[i] = ForceRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0, 0, 0};
@@ -114,7 +112,6 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     const Vector at = ghosts[g].image_of(particles.position[source]);
     motion_[n + g] = motion_[source];
     surface_[n + g] = surface_[source];
-    load_[n + g] = load_[source];
     force_[n + g] = force_[source];
     const DensityRecord& gradient = density_gradient_[source];
     const Vector image = ghosts[g].mirrored({gradient.x, gradient.y, gradient.z});
@@ -131,7 +128,6 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
   motion_.back() = MotionRecord{};
   density_gradient_.back() = DensityRecord{};
   surface_.back() = SurfaceRecord{};
-  load_.back() = LoadRecord{};
   force_.back() = ForceRecord{};
 }
 

@@ -54,7 +54,8 @@ void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
   }
 }
 
-void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list) {
+void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list,
+                             const MeltProperties& properties) {
   const ForceRecord* all = force_.data();
   const QuinticSpline half(kernel_.smoothing_length / 2, dimensions_);
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
@@ -117,11 +118,17 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
         shift_[i][d] -= across * out[d];
       }
     }
-    const double inward = load_[i].pressure;
+    double inward = 0;
+    if (settings_.surface_tension) {
+      inward += properties.surface_tension[i] * curvature_[i];
+    }
+    if (settings_.recoil) {
+      inward += properties.recoil[i];
+    }
     const double area_over_mass = area_[i] / mass, volume_over_mass = 1 / own.density;
     for (std::size_t d = 0; d < 3; ++d) {
       a[d] += settings_.gravity[d] - pull_[i] / mass * inward * normal_[i][d] -
-              volume_over_mass * load_gradient_[i][d];
+              volume_over_mass * missing_gradient_[i][d];
       if (settings_.marangoni && area_[i] > 0) {
         a[d] += area_over_mass * tension_gradient_[i][d];
       }

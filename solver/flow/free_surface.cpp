@@ -44,7 +44,6 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
                                const NeighbourList& list, const MeltProperties& properties) {
   write_surface(particles, ghosts, list, properties);
   curvatures(list);
-  loads(ghosts, list, properties);
   const std::size_t n = particles.size();
   const double stiffness = settings_.sound_speed * settings_.sound_speed;
   for_each_particle(liquid_.size(), [&](std::size_t k) {
@@ -79,7 +78,8 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
     }
   }
   walls(ghosts);
-  forces(particles, list);
+  missing_gradients(list);
+  forces(particles, list, properties);
 }
 
 void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& ghosts,

@@ -138,11 +138,6 @@ class FreeSurfaceFlow {
     double tension = 0;  // N m-1
     double depth = 0;    // m, below the surface; zero where there is no interface
   };
-  /// What pushes on the surface.
-  struct alignas(16) LoadRecord {
-    double pressure = 0;  // Pa, capillary and recoil
-    double bare = 0;      // 1 for melt of the interface, else 0
-  };
   /// Forces; two cache lines.
   struct alignas(64) ForceRecord {
     double x = void_position, y = void_position, z = void_position, vx = 0, vy = 0, vz = 0;
@@ -160,10 +155,10 @@ class FreeSurfaceFlow {
                      const NeighbourList& list, const MeltProperties& properties);
   void leave_disorder_out(const NeighbourList& list);
   void curvatures(const NeighbourList& list);
-  void loads(const std::vector<Ghost>& ghosts, const NeighbourList& list,
-             const MeltProperties& properties);
+  void missing_gradients(const NeighbourList& list);
   void walls(const std::vector<Ghost>& ghosts);
-  void forces(const Particles& particles, const NeighbourList& list);
+  void forces(const Particles& particles, const NeighbourList& list,
+              const MeltProperties& properties);
 
   FlowSettings settings_;
   QuinticSpline kernel_;
@@ -176,14 +171,13 @@ class FreeSurfaceFlow {
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;
-  std::vector<LoadRecord> load_;
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;
   double lattice_sum_ = 1;  // sum V W of the undisturbed lattice
   double outermost_depth_;  // over h
   std::vector<double> area_, curvature_, pressure_;
-  std::vector<Vector> load_gradient_;  // Pa m-1, of the load along the surface, the missing part
+  std::vector<Vector> missing_gradient_;  // Pa m-1, of the pressure along the surface
   std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on
   std::vector<std::uint8_t> limited_, disorder_;
   LimiterCounts limiters_;

@@ -153,30 +153,19 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
   });
 }
 
-/// What the air beyond the surface would add. It has no particles, and that its pressure, which is
-/// capillary and recoil pressure, pushes on the metal is in pull_. But where that pressure changes
-/// along the surface the missing neighbours would carry their part of its gradient as well: without
-/// it the outermost layer feels only 0.78 of the gradient that drives it, and a drop of 8 spacings
-/// swings 4 % too slowly.
-void FreeSurfaceFlow::loads(const std::vector<Ghost>& ghosts, const NeighbourList& list,
-                            const MeltProperties& properties) {
-  const std::size_t n = role_.size();
-  for_each_particle(liquid_.size(), [&](std::size_t k) {
-    const std::uint32_t i = liquid_[k];
-    const bool bare = surface_[i].depth > 0;
-    const double capillary =
-        settings_.surface_tension ? properties.surface_tension[i] * curvature_[i] : 0;
-    load_[i] = {bare ? capillary + (settings_.recoil ? properties.recoil[i] : 0) : 0,
-                bare ? 1.0 : 0.0};
-  });
-  for (const std::uint32_t g : near_ghosts_) {
-    load_[n + g] = load_[ghosts[g].source];
+/// What the neighbours that the outermost layer lacks would carry of the pressure's gradient along
+/// the surface: that layer feels only 0.78 of it, so a drop swings too slowly. Of the melt's own
+/// pressure, which sound has smoothed: taken from the capillary pressure of the surface the force
+/// follows every ripple of the curvature, and a drop of 12 spacings shakes itself to pieces.
+void FreeSurfaceFlow::missing_gradients(const NeighbourList& list) {
+  if (!settings_.surface_tension && !settings_.recoil) {
+    return;  // nothing acts on the surface, so the pressure there is zero all along it
   }
   const SurfaceRecord* all = surface_.data();
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const SurfaceRecord& own = all[i];
-    load_gradient_[i] = {};
+    missing_gradient_[i] = {};
     if (own.depth <= 0) {
       return;
     }
@@ -186,15 +175,16 @@ void FreeSurfaceFlow::loads(const std::vector<Ghost>& ghosts, const NeighbourLis
       const std::uint32_t* j = &list.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane slope = softened_slope(kernel_, r, r2);
-      sums.add(slope * gather(load_.data(), j, &LoadRecord::bare),
-               load_[i].pressure - gather(load_.data(), j, &LoadRecord::pressure), dx, dy, dz);
+      const Lane melt = gather(force_.data(), j, &ForceRecord::density);
+      sums.add(where_positive(melt, slope, Lane(0.0)),
+               pressure_[i] - gather(force_.data(), j, &ForceRecord::pressure), dx, dy, dz);
       const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
       spread += gather(motion_.data(), j, &MotionRecord::volume) * slope * (r2 - across * across);
     }
     const double missing = missing_support(sum_lanes(spread), dimensions_);
     const Vector gradient = surface_gradient(sums.total(), normal_[i]);
     for (std::size_t d = 0; d < 3; ++d) {
-      load_gradient_[i][d] = missing * gradient[d];
+      missing_gradient_[i][d] = missing * gradient[d];
     }
   });
 }

@@ -87,45 +87,107 @@ double squared_distance(const Vector& a, const Vector& b) {
   return x * x + y * y + z * z;
 }
 
-/// Appends the lists of `members` to list.index. Blocks are built apart and joined, so that the
-/// result does not depend on the number of threads. @param listed (i, j, squared distance) -> bool.
-template <class Listed>
+/// Everybody who may be a neighbour of the members of one cell, by index, so that the lists come
+/// out sorted without a sort of each; coordinates apart, so that distances are taken in lanes.
+struct Candidates {
+  std::vector<std::uint32_t> index;
+  std::vector<double> x, y, z, limit, squared;
+
+  void gather(const CellGrid& grid, const std::vector<Vector>& points,
+              const std::vector<double>& limits, const Vector& member) {
+    index.clear();
+    grid.around(member, [&](std::uint32_t j) { index.push_back(j); });
+    std::sort(index.begin(), index.end());
+    const std::size_t n = index.size();
+    for (auto* field : {&x, &y, &z, &limit, &squared}) {
+      field->resize(n);
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector& at = points[index[k]];
+      x[k] = at[0];
+      y[k] = at[1];
+      z[k] = at[2];
+      limit[k] = limits[index[k]];
+    }
+  }
+
+  /// Appends the neighbours of particle i: nearer than the larger of the two limits.
+  void append(std::uint32_t i, const Vector& at, double own_limit,
+              std::vector<std::uint32_t>& out) {
+    const std::size_t n = index.size(), begin = out.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const double dx = at[0] - x[k], dy = at[1] - y[k], dz = at[2] - z[k];
+      squared[k] = dx * dx + dy * dy + dz * dz;
+    }
+    // Written always and counted if it belongs there: no branch to be guessed wrong.
+    out.resize(begin + n + 1);
+    std::size_t end = begin;
+    for (std::size_t k = 0; k < n; ++k) {
+      out[end] = index[k];
+      end += squared[k] < std::max(own_limit, limit[k]) && index[k] != i ? 1U : 0U;
+    }
+    out.resize(end);
+  }
+};
+
+/// Appends the lists of `members`, in increasing order, to list.index: cell by cell, then joined in
+/// the members' order, so that the result does not depend on the number of threads.
+/// @param limits per point, m2: two points are neighbours below the larger of theirs.
 void append_lists(NeighbourList& list, const CellGrid& grid, const std::vector<Vector>& points,
-                  const std::vector<std::uint32_t>& members, const Listed& listed) {
-  constexpr std::int64_t block = 256;
-  const auto n = static_cast<std::int64_t>(members.size());
-  const std::int64_t blocks = (n + block - 1) / block;
-  std::vector<std::vector<std::uint32_t>> part(static_cast<std::size_t>(blocks));
-#pragma omp parallel for schedule(dynamic, 1)
-  for (std::int64_t b = 0; b < blocks; ++b) {
-    auto& out = part[static_cast<std::size_t>(b)];
-    out.reserve(static_cast<std::size_t>(block) * 128);
-    for (std::int64_t at = b * block; at < std::min(n, (b + 1) * block); ++at) {
-      const std::uint32_t i = members[static_cast<std::size_t>(at)];
-      const std::size_t begin = out.size();
-      grid.around(points[i], [&](std::uint32_t j) {
-        if (j != i && listed(i, j, squared_distance(points[i], points[j]))) {
-          out.push_back(j);
+                  const std::vector<std::uint32_t>& members, const std::vector<double>& limits) {
+  // The members of each cell that has any.
+  std::vector<std::uint32_t> count(grid.first.size(), 0), cells;
+  std::vector<std::uint32_t> home(members.size());
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    home[m] = static_cast<std::uint32_t>(grid.cell(grid.of(points[members[m]])));
+    if (count[home[m]]++ == 0) {
+      cells.push_back(home[m]);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> inside(cells.size()), part(cells.size());
+  for (std::uint32_t c = 0; c < cells.size(); ++c) {
+    inside[c].reserve(count[cells[c]]);
+    count[cells[c]] = c;
+  }
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    home[m] = count[home[m]];
+    inside[home[m]].push_back(members[m]);
+  }
+#pragma omp parallel
+  {
+    Candidates candidates;
+#pragma omp for schedule(dynamic, 1)
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      auto& out = part[c];
+      candidates.gather(grid, points, limits, points[inside[c].front()]);
+      for (const std::uint32_t i : inside[c]) {
+        const std::size_t begin = out.size();
+        candidates.append(i, points[i], limits[i], out);
+        while ((out.size() - begin) % lane_count != 0) {
+          out.push_back(list.void_index);
         }
-      });
-      std::sort(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end());
-      while ((out.size() - begin) % lane_count != 0) {
-        out.push_back(list.void_index);
+        list.first[i] = begin;  // within the cell, for now
+        list.last[i] = out.size();
       }
-      list.first[i] = begin;  // within the block, for now
-      list.last[i] = out.size();
     }
   }
-  for (std::int64_t b = 0; b < blocks; ++b) {
-    const std::size_t offset = list.index.size();
-    const auto& out = part[static_cast<std::size_t>(b)];
-    list.index.insert(list.index.end(), out.begin(), out.end());
-    for (std::int64_t at = b * block; at < std::min(n, (b + 1) * block); ++at) {
-      const std::uint32_t i = members[static_cast<std::size_t>(at)];
-      list.first[i] += offset;
-      list.last[i] += offset;
-    }
+  std::size_t end = list.index.size();
+  std::vector<std::size_t> within(members.size());
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const std::uint32_t i = members[m];
+    const std::size_t length = list.last[i] - list.first[i];
+    within[m] = list.first[i];
+    list.first[i] = end;
+    end += length;
+    list.last[i] = end;
   }
+  list.index.resize(end);
+  for_each_particle(members.size(), [&](std::size_t m) {
+    const std::uint32_t i = members[m];
+    const auto from = part[home[m]].begin() + static_cast<std::ptrdiff_t>(within[m]);
+    std::copy(from, from + static_cast<std::ptrdiff_t>(list.last[i] - list.first[i]),
+              list.index.begin() + static_cast<std::ptrdiff_t>(list.first[i]));
+  });
 }
 
 }  // namespace
@@ -151,8 +213,7 @@ NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghos
   list.last.assign(particles.size(), 0);
   std::vector<std::uint32_t> everyone(particles.size());
   std::iota(everyone.begin(), everyone.end(), 0U);
-  append_lists(list, grid, points, everyone,
-               [&](std::uint32_t, std::uint32_t, double r2) { return r2 < reach * reach; });
+  append_lists(list, grid, points, everyone, std::vector<double>(points.size(), reach * reach));
   list.first.back() = list.index.size();
   return list;
 }
@@ -205,9 +266,11 @@ void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>
     }
   }
   list_.index.resize(kept_);
-  append_lists(list_, grid, points, remade_, [&](std::uint32_t i, std::uint32_t j, double r2) {
-    return r2 < near || (r2 < far && (moves[i] != 0 || moves[j] != 0));
-  });
+  std::vector<double> limits(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    limits[i] = moves[i] != 0 ? far : near;
+  }
+  append_lists(list_, grid, points, remade_, limits);
   if (all) {
     kept_ = list_.index.size();
   }
