@@ -43,7 +43,7 @@ struct FlowSettings {
   Vector gravity{0, 0, -9.81};      ///< m s-2
   bool surface_tension = true, marangoni = true, recoil = true;
   ClumpingCure cure = ClumpingCure::repulsion;
-  double repulsion = 1e5;           ///< Pa, k of repulsion_pair()
+  double repulsion = 3e5;           ///< Pa, k of repulsion_pair()
   double repulsion_distance = 0.8;  ///< d of repulsion_pair(), in spacings
   double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
   double skin = 0.5;                ///< of the Verlet lists, in spacings

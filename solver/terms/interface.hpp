@@ -83,12 +83,14 @@ inline double surface_area(double pull, double curvature, double depth) {
   return half > 0 ? pull * (1 + half) : pull / (1 - half);
 }
 
-/// **Which share of a gradient along the surface the missing neighbours would carry**: 1 +
-/// `spread`/ (d - 1) with spread = sum_j V_j F |r_ij - (r_ij . n) n|^2, minus d - 1 where the
-/// support is whole; 0.22 in the outermost layer of a lattice. At most a half, which is a particle
-/// on the surface.
+/// **Which share of a gradient along the surface the missing neighbours would carry**: m = 1 +
+/// `spread`/(d - 1) with spread = sum_j V_j F |r_ij - (r_ij . n) n|^2, minus d - 1 where the
+/// support is whole; 0.22 in the outermost layer of a lattice. Where m goes from 0.3 to 0.4 the
+/// share fades to zero: edges, threads and spray have no surface that a gradient could run along.
 inline double missing_support(double spread, int dimensions) {
-  return std::clamp(1 + spread / (dimensions - 1), 0.0, 0.5);
+  constexpr double whole = 0.35, none = 0.45;
+  const double missing = std::max(0.0, 1 + spread / (dimensions - 1));
+  return missing * std::clamp((none - missing) / (none - whole), 0.0, 1.0);
 }
 
 /// **Gradient along the surface** of the quantity s: M^-1 sum F r_ij (s_i - s_j), exact for a
