@@ -82,17 +82,9 @@ SurfaceDepth::SurfaceDepth(int dimensions) {
   }
 }
 
-double SurfaceDepth::covered(double strength_over_sum) const {
-  const double last = static_cast<double>(covered_.size() - 1);
-  const double at = std::clamp(strength_over_sum / ratio_step_, 0.0, last);
-  const auto k = static_cast<std::size_t>(std::min(at, last - 1));
-  const double share = at - static_cast<double>(k);
-  return covered_[k] + share * (covered_[k + 1] - covered_[k]);
-}
-
-double SurfaceDepth::look_up(const std::vector<double>& table, double strength) const {
+double SurfaceDepth::look_up(const std::vector<double>& table, double place) {
   const double last = static_cast<double>(table.size() - 1);
-  const double at = std::clamp(strength / step_, 0.0, last);
+  const double at = std::clamp(place, 0.0, last);
   const auto k = static_cast<std::size_t>(std::min(at, last - 1));
   const double share = at - static_cast<double>(k);
   return table[k] + share * (table[k + 1] - table[k]);

@@ -23,20 +23,23 @@ class SurfaceDepth {
   explicit SurfaceDepth(int dimensions);
 
   /// Depth over h below a plane where the colour gradient times h is `strength`; between 0.1 and 2.
-  double operator()(double strength) const { return look_up(depth_, strength); }
+  double operator()(double strength) const { return look_up(depth_, strength / step_); }
 
   /// By how much that falls short per curvature, over h^2. Below a surface of curvature kappa the
   /// colour gradient is W1(s) (1 + kappa s/2) to first order, in two dimensions and in three, so
   /// the depth is s + kappa s W1/(2 |dW1/ds|).
-  double per_curvature(double strength) const { return look_up(per_curvature_, strength); }
+  double per_curvature(double strength) const { return look_up(per_curvature_, strength / step_); }
 
   /// Which share of the kernel lies within the metal, where the colour gradient times h is
   /// `strength` times the share that the neighbours fill: both grow alike when the metal is
   /// compressed, so their ratio tells the depth and not the density. Between a half and one.
-  double covered(double strength_over_sum) const;
+  double covered(double strength_over_sum) const {
+    return look_up(covered_, strength_over_sum / ratio_step_);
+  }
 
  private:
-  double look_up(const std::vector<double>& table, double strength) const;
+  /// Between the entries; `place` counts them.
+  static double look_up(const std::vector<double>& table, double place);
 
   double step_, ratio_step_;
   std::vector<double> depth_, per_curvature_;  // at strength 0, step_, 2 step_, ...
@@ -85,7 +88,7 @@ inline double surface_area(double pull, double curvature, double depth) {
 
 /// **Which share of a gradient along the surface the missing neighbours would carry**: m = 1 +
 /// `spread`/(d - 1) with spread = sum_j V_j F |r_ij - (r_ij . n) n|^2, minus d - 1 where the
-/// support is whole; 0.22 in the outermost layer of a lattice. Where m goes from 0.3 to 0.4 the
+/// support is whole; 0.22 in the outermost layer of a lattice. Where m goes from 0.35 to 0.45 the
 /// share fades to zero: edges, threads and spray have no surface that a gradient could run along.
 inline double missing_support(double spread, int dimensions) {
   constexpr double whole = 0.35, none = 0.45;
