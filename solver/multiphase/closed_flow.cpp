@@ -203,7 +203,7 @@ void ClosedFlow::move(double dt) {
 void ClosedFlow::advance(double dt) {
   kick(dt / 2);
   move(dt);
-  evaluate();
+  evaluate_after(dt);
   kick(dt / 2);
   time_ += dt;
   ++steps_;

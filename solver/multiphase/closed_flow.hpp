@@ -30,23 +30,29 @@ struct ConductionRecord {
 
 /// The background pressure p_b of the transport velocity, over p0, between two errors. What shear
 /// stores in the arrangement of the particles is lost when v~ - v relaxes it, which brakes a flow
-/// like a viscosity of order c dx p0/p_b; and particles at rest are stirred in proportion to p_b,
-/// which also breaks up a square lattice within some 3000 p0/p_b steps per factor e. README.md has
-/// the measurements. The stiffest disorder relaxes by p_b/(10 p0) in an acoustic step.
-inline constexpr double background_at_rest = 1, background_in_shear = 4;
+/// like a viscosity; and particles at rest are stirred in proportion to p_b, which also breaks up a
+/// square lattice within some 3000 p0/p_b steps per factor e. README.md has the measurements. The
+/// stiffest disorder relaxes by p_b/(10 p0) in an acoustic step.
+inline constexpr double background_at_rest = 1, background_in_shear = 8;
+/// ClosedFlowModel::density_relaxation of a flow that shears for long, README.md says why.
+inline constexpr double relaxation_in_shear = 30;
 
 /// What a flow is made of besides its particles.
 struct ClosedFlowModel {
   Domain domain;     ///< faces: periodic, mirror (slip), open (walls of particles stand there)
   Vector gravity{};  ///< m s-2
-  std::vector<Fluid> fluids;    ///< a particle's `fluid` counts into this
-  double stiffness = 0;         ///< p0 = rho_0 c^2, Pa, of every fluid
-  double background = 0;        ///< p_b of the transport velocity, Pa; see background_in_shear
-  double added_pressure = 0;    ///< p at rho = rho_0, Pa
-  double smoothing_length = 0;  ///< m; zero: the spacing
-  double skin = 0.4;            ///< of the lists, in smoothing lengths
-  bool interface = false;       ///< surface tension between Phase::liquid and Phase::gas
-  bool heat = false;            ///< conduction; temperature also acts on nothing else here
+  std::vector<Fluid> fluids;  ///< a particle's `fluid` counts into this
+  double stiffness = 0;       ///< p0 = rho_0 c^2, Pa, of every fluid
+  double background = 0;      ///< p_b of the transport velocity, Pa; see background_in_shear
+  double added_pressure = 0;  ///< p at rho = rho_0, Pa
+  /// N: the density follows continuity and goes to the sum over the particles within N h/c; zero:
+  /// it is that sum, as the sources of this form have it. See relaxation_in_shear.
+  double density_relaxation = 0;
+  double density_diffusion = 0.1;  ///< delta of density_diffusion_pair(), where N is not zero
+  double smoothing_length = 0;     ///< m; zero: the spacing
+  double skin = 0.4;               ///< of the lists, in smoothing lengths
+  bool interface = false;          ///< surface tension between Phase::liquid and Phase::gas
+  bool heat = false;               ///< conduction; temperature also acts on nothing else here
 };
 
 /// Values a caller may set between steps, one entry per particle in the order of particles().
@@ -97,9 +103,11 @@ class ClosedFlow {
   std::size_t builds() const { return builds_; }  ///< of the neighbour lists
   /// Forces, pressures and curvature from the state as it is; called by the constructor and by
   /// advance(), and by who changes particles() by hand.
-  void evaluate();
+  void evaluate() { evaluate_after(0); }
 
  private:
+  /// Where a step of dt seconds ended; zero: no step, densities are sums.
+  void evaluate_after(double dt);
   void build_lists();
   void move(double dt);
   void kick(double dt);
@@ -109,9 +117,12 @@ class ClosedFlow {
   template <class Record, class Change>
   void fill_images(std::vector<Record>& records, const Change& change) const;
   template <int D>
-  void evaluate_in();
+  void evaluate_in(double dt);
   template <int D>
   void sum_density();
+  template <int D>
+  void continue_density(double dt);
+  void fill_records();
   template <int D>
   void extrapolate_to_walls();
   template <int D>

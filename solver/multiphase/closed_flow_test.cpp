@@ -92,6 +92,55 @@ TEST(ClosedFlow, GivesTheSameBytesOnAnyNumberOfThreads) {
   omp_set_num_threads(before);
 }
 
+// What lies behind a periodic face must reach a wall as what lies in front of it does, in the very
+// evaluation in which the lists are made too.
+TEST(ClosedFlow, AWallIsTheSameAllAlongAPeriodicBox) {
+  ClosedFlowModel model;
+  model.fluids = {{1, 0.1, 0, 1}};
+  model.stiffness = model.background = 100;
+  model.added_pressure = 10;
+  model.domain = box({0, -0.3, 0}, {1, 1, 0}, {Face::periodic, Face::open, Face::open});
+  auto start = fill_lattice(2, 0.1, {0, -0.3, 0}, {1, 1, 0}, model.fluids, [](const Vector& at) {
+    return at[1] < 0 ? Placement{Phase::solid, -1, {}} : Placement{Phase::liquid, 0, {1, 0, 0}};
+  });
+  const ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
+  for (std::size_t i = 0; i < flow.particles().size(); ++i) {
+    if (flow.particles().phase[i] == Phase::solid && flow.particles().position[i][1] > -0.1) {
+      EXPECT_NEAR(flow.pressure()[i], 10, 0.05) << flow.particles().position[i][0];
+    }
+  }
+}
+
+TEST(ClosedFlow, ContinuedDensityFollowsCompressionAndGoesToTheSum) {
+  const double pi = 3.14159265358979, speed = 1e-3, step = 1e-6;
+  for (const double relaxation : {1e12, 30.0}) {
+    ClosedFlowModel model;
+    model.fluids = {{1, 0.1, 0, 1}};
+    model.stiffness = model.background = 100;
+    model.density_relaxation = relaxation;
+    model.density_diffusion = 0;
+    model.domain = box({0, 0, 0}, {1, 1, 0}, {Face::periodic, Face::periodic, Face::open});
+    auto start = fill_lattice(2, 0.02, {0, 0, 0}, {1, 1, 0}, model.fluids,
+                              [](const Vector&) { return Placement{}; });
+    ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
+    Particles& particles = flow.particles();
+    const double summed = particles.density[0], off = 1.01 * summed;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      particles.velocity[i][0] = speed * std::sin(2 * pi * particles.position[i][0]);
+      particles.density[i] = off;
+    }
+    flow.advance(step);
+    // c = 10, h = 0.02: the excess falls at c/(N h).
+    const double excess = (off - summed) * (1 - step * 10 / (relaxation * 0.02));
+    for (std::size_t i = 0; i < particles.size(); i += 37) {
+      const double compression =
+          -off * speed * 2 * pi * std::cos(2 * pi * particles.position[i][0]);
+      EXPECT_NEAR((particles.density[i] - summed - excess) / step, compression,
+                  0.02 * speed * 2 * pi);
+    }
+  }
+}
+
 TEST(ClosedFlow, HoldsASmallHydrostaticColumn) {
   VerificationCase c;
   c.name = "small column";

@@ -2,25 +2,23 @@
 // The passes of one evaluation, in the order in which they need each other; those over the
 // interface are in interface_passes.cpp.
 #include <algorithm>
+#include <cmath>
 
 #include "solver/multiphase/pass.hpp"
 #include "solver/terms/conduction.hpp"
+#include "solver/terms/continuity.hpp"
 
 namespace meltproof::solver {
 
 template <int D>
 void ClosedFlow::sum_density() {
   const std::size_t n = particles_.size();
-  for_each_particle(n, [&](std::size_t i) {
-    set(records_[i], FlowRecord::position(), particles_.position[i]);
-    records_[i].fluid = is_fluid(i) ? 1 : 0;
-  });
+  for_each_particle(
+      n, [&](std::size_t i) { set(records_[i], FlowRecord::position(), particles_.position[i]); });
   fill_images(records_, [](FlowRecord&, const Ghost&) {});
   const double own = kernel_.value(0.0);
   for_each_particle(n, [&](std::size_t i) {
-    FlowRecord& record = records_[i];
     if (!is_fluid(i)) {
-      record.volume = particles_.volume[i];
       return;
     }
     Lane sum = 0;
@@ -28,15 +26,76 @@ void ClosedFlow::sum_density() {
                       [&](const PairGeometry<D, Lane>& pair, const std::uint32_t*) {
                         sum += kernel_.value(pair.distance);
                       });
+    particles_.density[i] = particles_.mass[i] * (own + sum_lanes(sum));
+  });
+}
+
+template <int D>
+void ClosedFlow::continue_density(double dt) {
+  const std::size_t n = particles_.size();
+  for_each_particle(n, [&](std::size_t i) {
+    FlowRecord& record = records_[i];
+    set(record, FlowRecord::position(), particles_.position[i]);
+    set(record, FlowRecord::velocity(), particles_.velocity[i]);
+    record.fluid = is_fluid(i) ? 1 : 0;
+    record.volume = is_fluid(i) ? particles_.mass[i] / particles_.density[i] : particles_.volume[i];
+    record.pressure = pressure_[i];
+  });
+  fill_images(records_, [](FlowRecord& image, const Ghost& ghost) {
+    set(image, FlowRecord::velocity(), ghost.mirrored(get(image, FlowRecord::velocity())));
+  });
+  const FlowRecord* all = records_.data();
+  const double at_centre = kernel_.value(0.0), h = kernel_.smoothing_length;
+  for_each_particle(n, [&](std::size_t i) {
+    if (!is_fluid(i)) {
+      return;
+    }
+    const FlowRecord& own = all[i];
+    const auto velocity = spread<D>(own, FlowRecord::velocity());
+    Lane compression = 0, diffused = 0, number = 0;
+    for_each_group<D>(
+        neighbours_, i, all, [&](const PairGeometry<D, Lane>& pair, const std::uint32_t* j) {
+          const Lane volume = gather(all, j, &FlowRecord::volume);
+          auto approach = gather<D>(all, j, FlowRecord::velocity());
+          for (std::size_t d = 0; d < D; ++d) {
+            approach[d] = velocity[d] - approach[d];
+          }
+          compression +=
+              continuity_pair<Lane>(volume, pair.gradient(kernel_), dot<D>(approach, pair.r));
+          // Of the pressures, which are equal where two fluids meet; densities are not.
+          diffused += gather(all, j, &FlowRecord::fluid) *
+                      density_diffusion_pair<Lane>(own.pressure,
+                                                   gather(all, j, &FlowRecord::pressure), Lane(0.0),
+                                                   volume, kernel_.gradient_factor(pair.squared));
+          number += kernel_.value(pair.distance);
+        });
+    const double reference = model_.fluids[static_cast<std::size_t>(fields_.fluid[i])].density;
+    const double sound = std::sqrt(model_.stiffness / reference);
+    double& density = particles_.density[i];
+    const double summed = particles_.mass[i] * (at_centre + sum_lanes(number));
+    density += dt * (density * sum_lanes(compression) +
+                     model_.density_diffusion * h * sound * reference / model_.stiffness *
+                         sum_lanes(diffused) +
+                     sound / (model_.density_relaxation * h) * (summed - density));
+  });
+}
+
+void ClosedFlow::fill_records() {
+  for_each_particle(particles_.size(), [&](std::size_t i) {
+    FlowRecord& record = records_[i];
+    record.fluid = is_fluid(i) ? 1 : 0;
+    if (!is_fluid(i)) {
+      record.volume = particles_.volume[i];
+      return;
+    }
     const Fluid& fluid = model_.fluids[static_cast<std::size_t>(fields_.fluid[i])];
-    record.volume = 1 / (own + sum_lanes(sum));
-    record.density = particles_.mass[i] / record.volume;
+    record.density = particles_.density[i];
+    record.volume = particles_.mass[i] / record.density;
     record.pressure =
         state_pressure(record.density, fluid.density, model_.stiffness, model_.added_pressure);
     record.viscosity = fields_.viscosity[i];
     set(record, FlowRecord::velocity(), particles_.velocity[i]);
     set(record, FlowRecord::transport(), transport_[i]);
-    particles_.density[i] = record.density;
     pressure_[i] = record.pressure;
   });
 }
@@ -154,13 +213,21 @@ void ClosedFlow::conduct_heat() {
 }
 
 template <int D>
-void ClosedFlow::evaluate_in() {
-  sum_density<D>();
-  extrapolate_to_walls<D>();
-  fill_images(records_, [](FlowRecord& image, const Ghost& ghost) {
+void ClosedFlow::evaluate_in(double dt) {
+  if (dt > 0 && model_.density_relaxation > 0) {
+    continue_density<D>(dt);
+  } else {
+    sum_density<D>();
+  }
+  const auto mirror = [](FlowRecord& image, const Ghost& ghost) {
     set(image, FlowRecord::velocity(), ghost.mirrored(get(image, FlowRecord::velocity())));
     set(image, FlowRecord::transport(), ghost.mirrored(get(image, FlowRecord::transport())));
-  });
+  };
+  fill_records();
+  // Walls read the fluid's images, then everybody reads those of the walls.
+  fill_images(records_, mirror);
+  extrapolate_to_walls<D>();
+  fill_images(records_, mirror);
   if (model_.interface) {
     sum_interface<D>();
   }
@@ -170,11 +237,11 @@ void ClosedFlow::evaluate_in() {
   }
 }
 
-void ClosedFlow::evaluate() {
+void ClosedFlow::evaluate_after(double dt) {
   if (particles_.dimensions == 2) {
-    evaluate_in<2>();
+    evaluate_in<2>(dt);
   } else {
-    evaluate_in<3>();
+    evaluate_in<3>(dt);
   }
 }
 
