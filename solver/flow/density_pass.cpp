@@ -104,9 +104,10 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
     double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
     if (relax) {
       const double sum = (sum_lanes(summed) + particles.mass[i] * at_centre) / lattice_sum_;
+      // The colour gradient counts volumes as they are now, the sum masses.
       const double strength =
           std::hypot(colour_[i][0], colour_[i][1], colour_[i][2]) * kernel_.smoothing_length;
-      rate += relaxation * density_excess(sum / depth_.covered(strength * reference / sum),
+      rate += relaxation * density_excess(sum / depth_.covered(strength * own.density / sum),
                                           own.density, reference);
     }
     particles.density[i] += dt * rate;

@@ -2,6 +2,7 @@
 #include "solver/multiphase/closed_flow.hpp"
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -103,10 +104,23 @@ TEST(ClosedFlow, AWallIsTheSameAllAlongAPeriodicBox) {
   auto start = fill_lattice(2, 0.1, {0, -0.3, 0}, {1, 1, 0}, model.fluids, [](const Vector& at) {
     return at[1] < 0 ? Placement{Phase::solid, -1, {}} : Placement{Phase::liquid, 0, {1, 0, 0}};
   });
-  const ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
+  ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
   for (std::size_t i = 0; i < flow.particles().size(); ++i) {
-    if (flow.particles().phase[i] == Phase::solid && flow.particles().position[i][1] > -0.1) {
+    if (flow.particles().phase[i] == Phase::liquid) {
+      flow.particles().velocity[i] = {1, 0, 0};
+    }
+  }
+  flow.evaluate();
+  std::optional<double> drag;
+  for (std::size_t i = 0; i < flow.particles().size(); ++i) {
+    const double height = flow.particles().position[i][1];
+    if (std::abs(height) < 0.1) {
       EXPECT_NEAR(flow.pressure()[i], 10, 0.05) << flow.particles().position[i][0];
+    }
+    if (height > 0 && height < 0.1) {
+      drag = drag.value_or(flow.acceleration()[i][0]);
+      EXPECT_NEAR(flow.acceleration()[i][0], *drag, 1e-9) << flow.particles().position[i][0];
+      EXPECT_LT(*drag, -1);
     }
   }
 }

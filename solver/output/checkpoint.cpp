@@ -231,7 +231,10 @@ std::optional<Checkpoint> CheckpointFolder::newest(const Provenance& provenance)
       const ArtifactReader reader(*file, kind);
       input = reader.attribute("resolved_input", "/provenance");
       revision = reader.attribute("revision", "/provenance");
-      found = read(reader);
+      // One of another input or revision may hold other fields: it is refused below for what it is.
+      if (input == provenance.resolved_input && revision == code_revision()) {
+        found = read(reader);
+      }
     } catch (const std::exception& problem) {
       spdlog::warn("{}; this checkpoint is passed over", problem.what());
       continue;

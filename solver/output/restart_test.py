@@ -136,13 +136,16 @@ class Restart(unittest.TestCase):
     def test_a_checkpoint_of_another_revision_is_refused(self):
         folder = self.root / "revision"
         self.stop_at_a_checkpoint(folder)
+        before = self.checkpoints(folder)
         for place in self.checkpoints(folder):
             with h5py.File(place, "r+") as file:
                 file["provenance"].attrs["revision"] = "0123456789ab"
+                del file["melt/recoil"]
         done = self.run_case(folder, "--restart")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("was made by revision 0123456789ab", done.stderr)
         self.assertIn("leave out --restart to begin anew", done.stderr)
+        self.assertEqual(self.checkpoints(folder), before)
 
     def test_without_a_checkpoint_it_begins_and_without_restart_it_begins_anew(self):
         folder = self.root / "anew"

@@ -2,6 +2,7 @@
 #include "solver/step/engine.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 
@@ -296,6 +297,19 @@ TEST(Flow, AParticleThatIsThrownOutStopsTheRunAndIsNamed) {
          {"particle ", "spacings within a few steps", "pressure", "may hold it"}) {
       EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
     }
+    int id = -1;
+    double x = 0, y = 0, z = 0, moved = 0;
+    ASSERT_EQ(std::sscanf(text.substr(text.find("particle ")).c_str(),
+                          "particle %d, last listed at (%lf, %lf, %lf) um: it moved by %lf", &id,
+                          &x, &y, &z, &moved),
+              5)
+        << text;
+    EXPECT_NEAR(x, (id % 10 + 0.5) * 10, 1e-9) << text;
+    EXPECT_NEAR(y, (id / 10 % 10 + 0.5) * 10, 1e-9) << text;
+    EXPECT_NEAR(z, (id / 100 - 3.5) * 10, 1e-9) << text;
+    EXPECT_LT(std::hypot(x - 5, y - 45, z - 25), 30) << "far from the cause: " << text;
+    EXPECT_GT(moved, 1);
+    EXPECT_LT(moved, 20);
   }
 }
 

@@ -20,8 +20,8 @@ T viscosity_pair(const T& viscosity_i, const T& viscosity_j) {
 /// turn as a solid without friction, and leave a free surface without traction: the form with v_ij
 /// instead dissipates half of what a drop that oscillates should (both after Colagrossi et al.
 /// 2011). Its usual weight (d + 2)/(r^2 + (0.1 h)^2) looks at the nearest neighbours too much: on a
-/// lattice the shear viscosity is 0.88 of eta along its axes and 1.18 along its diagonals. Weighted
-/// by r^2 more it is 1.003 and 1.000 (two dimensions: 1.004, 1.000), and <r^2> = int W r^2 makes
+/// lattice the shear viscosity is 0.88 of eta along its axes and 1.17 along its diagonals. Weighted
+/// by r^2 more it is 1.003 and 1.001 (two dimensions too), and <r^2> = int W r^2 makes
 /// the integral exact. (after Monaghan & Gingold 1983)
 /// @param slope_over_r (dW/dr)/r in m^-(d+2); @param second_moment <r^2> in m2.
 template <class T>
