@@ -102,7 +102,7 @@ TEST(ClosedFlow, AWallIsTheSameAllAlongAPeriodicBox) {
   model.added_pressure = 10;
   model.domain = box({0, -0.3, 0}, {1, 1, 0}, {Face::periodic, Face::open, Face::open});
   auto start = fill_lattice(2, 0.1, {0, -0.3, 0}, {1, 1, 0}, model.fluids, [](const Vector& at) {
-    return at[1] < 0 ? Placement{Phase::solid, -1, {}} : Placement{Phase::liquid, 0, {1, 0, 0}};
+    return at[1] < 0 ? Placement{Phase::solid, -1, {}} : Placement{Phase::liquid, 0, {}};
   });
   ClosedFlow flow(std::move(start.particles), std::move(start.fluid), model);
   for (std::size_t i = 0; i < flow.particles().size(); ++i) {
