@@ -94,6 +94,14 @@ InputTable flow_table(FlowInput& f) {
                                        .about = "Background pressure of the cure \"transport\".",
                                        .minimum = 0,
                                        .maximum = 1e9})
+      .quantity(s.shifting,
+                {.name = "shifting",
+                 .unit = "1",
+                 .about = "Transport velocity below the surface, background pressure over rho c h "
+                          "|grad v|: relaxes the arrangement of particles that shear loads; 0: "
+                          "none, then a stirred melt is some 15 % too stiff.",
+                 .minimum = 0,
+                 .maximum = 100})
       .flag(s.surface_tension, {.name = "surface_tension", .about = "Capillary pressure."})
       .flag(s.marangoni, {.name = "marangoni",
                           .about = "Pull along the surface by the gradient of surface tension, of "

@@ -61,12 +61,14 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
   const double over_onset = 1 / kernel_.value(settings_.repulsion_distance * spacing_);
   const bool transport = settings_.cure == ClumpingCure::transport;
+  const bool shift = transport || settings_.shifting > 0;
+  const double shifting = settings_.shifting * settings_.sound_speed * kernel_.smoothing_length;
   const double artificial =
       settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const ForceRecord& own = all[i];
-    Lane ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
+    Lane strain = 0, ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
     const Lane own_square = own.volume * own.volume;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
@@ -97,7 +99,9 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
       ax += along * dx;
       ay += along * dy;
       az += along * dz;
-      if (transport) {
+      if (shift) {
+        // |grad v|^2 of a linear velocity, as minus the sum of V W'/r r r^T is the unit matrix.
+        strain -= volume * slope_over_r * (ux * ux + uy * uy + uz * uz);
         const Lane push = squares * half.slope(r) / r;
         sx += push * dx;
         sy += push * dy;
@@ -107,12 +111,15 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
     const double mass = particles.mass[i];
     Vector& a = acceleration_[i];
     a = {sum_lanes(ax) / mass, sum_lanes(ay) / mass, sum_lanes(az) / mass};
-    if (transport) {
-      const double background = std::min(10 * std::abs(own.pressure), settings_.transport_pressure);
+    if (shift) {
+      const Vector& out = normal_[i];
+      const bool interior = out[0] == 0 && out[1] == 0 && out[2] == 0;
+      const double background = std::max(
+          transport ? std::min(10 * std::abs(own.pressure), settings_.transport_pressure) : 0,
+          interior ? shifting * own.density * std::sqrt(sum_lanes(strain)) : 0);
       shift_[i] = {-background * sum_lanes(sx) / mass, -background * sum_lanes(sy) / mass,
                    -background * sum_lanes(sz) / mass};
       // Beyond the surface nothing pushes back: only along it may it even out places.
-      const Vector& out = normal_[i];
       const double across = shift_[i][0] * out[0] + shift_[i][1] * out[1] + shift_[i][2] * out[2];
       for (std::size_t d = 0; d < 3; ++d) {
         shift_[i][d] -= across * out[d];

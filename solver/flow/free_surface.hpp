@@ -46,7 +46,11 @@ struct FlowSettings {
   double repulsion = 3e5;           ///< Pa, k of repulsion_pair()
   double repulsion_distance = 0.8;  ///< d of repulsion_pair(), in spacings
   double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
-  double skin = 0.5;                ///< of the Verlet lists, in spacings
+  /// beta: below the surface particles move with a transport velocity of background pressure beta
+  /// rho c h |grad v|, without the momentum that this carries. It relaxes what shear loads into
+  /// their arrangement, which otherwise carries stress; without shear there is nothing to relax.
+  double shifting = 10;
+  double skin = 0.5;  ///< of the Verlet lists, in spacings
 };
 
 /// What the melt is like, per particle; only entries of liquid particles count.

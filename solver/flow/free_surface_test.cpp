@@ -194,6 +194,8 @@ TEST(FreeSurfaceFlow, PressureAndViscosityNeitherMoveNorTurnADropAsAWhole) {
   const VerificationCase c = melt_case();
   Model model = surface_model(c);
   model.flow->surface_tension = model.flow->marangoni = false;
+  // It moves particles without their momentum, which turns a drop.
+  model.flow->shifting = 0;
   Engine engine = make_drop(c, model, 8 * dx, false);
   start_moving(
       engine, [](const Vector& at) { return 1e5 * std::sin(2e5 * at[0]); }, stir);
@@ -214,6 +216,55 @@ TEST(FreeSurfaceFlow, PressureAndViscosityNeitherMoveNorTurnADropAsAWhole) {
 
 // Curvature times area is no sum over pairs, so it may push a drop as a whole; it must do so by
 // little: a drop that oscillates gathers a speed below a fiftieth of its surface's.
+// Of a disordered drop: the sums over the arrangement are the same for all velocities, so the
+// strength shows |grad v|; the outermost layers are left where they are.
+TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
+  const VerificationCase c = melt_case();
+  const Mixture mixture = melt_and_wall(c);
+  Model model = surface_model(c);
+  model.domain.lower = {-20 * dx, -20 * dx, -20 * dx};
+  model.domain.upper = {20 * dx, 20 * dx, 20 * dx};
+  Particles particles = fill_cells(c, dx, mixture, {-8, -8, -8}, {8, 8, 8}, [&](const Vector& at) {
+    return std::hypot(at[0], at[1], at[2]) < 7.5 * dx ? Fill::melt : Fill::nothing;
+  });
+  for (Vector& at : particles.position) {
+    at[0] += 0.2 * dx * std::sin(1e7 * at[1] + 3e6 * at[2]);
+  }
+  std::vector<double> depth;
+  for (const Vector& at : particles.position) {
+    depth.push_back(7.5 * dx - std::hypot(at[0], at[1], at[2]));
+  }
+  const auto shifts = [&](const Vector& rate) {
+    Engine engine(particles, mixture, Diffusivity{}, model);
+    start_moving(
+        engine, [](const Vector&) { return 0.0; },
+        [&rate](const Vector& at) -> Vector {
+          return {rate[0] * at[0], rate[1] * at[0], rate[2] * at[1]};
+        });
+    // In the order of the particles that were handed over.
+    std::vector<Vector> found(particles.size());
+    const EngineState state = engine.state();
+    for (std::size_t k = 0; k < engine.flow().liquid().size(); ++k) {
+      const std::uint32_t i = engine.flow().liquid()[k];
+      found[static_cast<std::size_t>(engine.particles().identity[i])] = state.flow.shift[k];
+    }
+    return found;
+  };
+  const auto still = shifts({}), sheared = shifts({0, 1e4, 0}), all = shifts({2e4, 1e4, 2e4});
+  const auto strength = [](const Vector& v) { return std::hypot(v[0], v[1], v[2]); };
+  std::size_t deep = 0;
+  for (std::size_t k = 0; k < still.size(); ++k) {
+    EXPECT_EQ(strength(still[k]), 0);
+    if (depth[k] < dx) {
+      EXPECT_EQ(strength(sheared[k]), 0) << "at the surface";
+    } else if (depth[k] > 3.5 * dx) {
+      EXPECT_NEAR(strength(all[k]), 3 * strength(sheared[k]), 0.15 * strength(all[k]));
+      deep += strength(sheared[k]) > 1e3 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(deep, 50U);
+}
+
 TEST(FreeSurfaceFlow, SurfaceTensionHardlyMovesADropAsAWhole) {
   const VerificationCase c = melt_case();
   Engine engine = make_drop(c, surface_model(c), 8 * dx, false);

@@ -59,7 +59,7 @@ void each_array(State& s, const Visit& visit) {
   visit("listed_at", s.listed_at, "m");
   visit("mobile", s.mobile, "1");
   visit("flow/acceleration", s.flow.acceleration, "m s-2");
-  visit("flow/shift", s.flow.shift, "m s-1");
+  visit("flow/shift", s.flow.shift, "m s-2");
   visit("flow/area", s.flow.area, "m2");
   visit("flow/pressure", s.flow.pressure, "Pa");
   visit("melt/viscosity", s.melt.viscosity, "Pa s");
