@@ -237,7 +237,7 @@ TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
   const auto shifts = [&](const Vector& rate) {
     Engine engine(particles, mixture, Diffusivity{}, model);
     start_moving(
-        engine, [](const Vector&) { return 0.0; },
+        engine, [](const Vector&) { return 2e5; },
         [&rate](const Vector& at) -> Vector {
           return {rate[0] * at[0], rate[1] * at[0], rate[2] * at[1]};
         });
@@ -251,6 +251,11 @@ TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
     return found;
   };
   const auto still = shifts({}), sheared = shifts({0, 1e4, 0}), all = shifts({2e4, 1e4, 2e4});
+  // A background of 1e6 Pa, to which the others stand as beta rho c h |grad v| does.
+  model.flow->cure = ClumpingCure::transport;
+  model.flow->shifting = 0;
+  const auto known = shifts({});
+  const double share = 10 * 7763 * 50 * dx * 1e4 / 1e6;
   const auto strength = [](const Vector& v) { return std::hypot(v[0], v[1], v[2]); };
   std::size_t deep = 0;
   for (std::size_t k = 0; k < still.size(); ++k) {
@@ -259,6 +264,7 @@ TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
       EXPECT_EQ(strength(sheared[k]), 0) << "at the surface";
     } else if (depth[k] > 3.5 * dx) {
       EXPECT_NEAR(strength(all[k]), 3 * strength(sheared[k]), 0.15 * strength(all[k]));
+      EXPECT_NEAR(strength(sheared[k]), share * strength(known[k]), 0.15 * strength(sheared[k]));
       deep += strength(sheared[k]) > 1e3 ? 1 : 0;
     }
   }
