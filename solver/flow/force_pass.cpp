@@ -63,6 +63,8 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
   const bool transport = settings_.cure == ClumpingCure::transport;
   const bool shift = transport || settings_.shifting > 0;
   const double shifting = settings_.shifting * settings_.sound_speed * kernel_.smoothing_length;
+  // Of c^2: beyond some 2 c^2 the stiffest disorder overshoots within one acoustic step.
+  const double stiffest = 0.2 * settings_.sound_speed * settings_.sound_speed;
   const double artificial =
       settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
@@ -116,7 +118,7 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
       const bool interior = out[0] == 0 && out[1] == 0 && out[2] == 0;
       const double background = std::max(
           transport ? std::min(10 * std::abs(own.pressure), settings_.transport_pressure) : 0,
-          interior ? shifting * own.density * std::sqrt(sum_lanes(strain)) : 0);
+          interior ? own.density * std::min(shifting * std::sqrt(sum_lanes(strain)), stiffest) : 0);
       shift_[i] = {-background * sum_lanes(sx) / mass, -background * sum_lanes(sy) / mass,
                    -background * sum_lanes(sz) / mass};
       // Beyond the surface nothing pushes back: only along it may it even out places.

@@ -48,7 +48,8 @@ struct FlowSettings {
   double transport_pressure = 1e6;  ///< Pa, least p0 of the transport velocity, 10 |p| at most
   /// beta: below the surface particles move with a transport velocity of background pressure beta
   /// rho c h |grad v|, without the momentum that this carries. It relaxes what shear loads into
-  /// their arrangement, which otherwise carries stress; without shear there is nothing to relax.
+  /// their arrangement, which otherwise carries stress; without shear there is nothing to relax. At
+  /// most 0.2 rho c^2: in splashes |grad v| has no bound.
   double shifting = 10;
   double skin = 0.5;  ///< of the Verlet lists, in spacings
 };
