@@ -84,6 +84,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
   motion_.resize(all);
   density_gradient_.resize(all);
   surface_.resize(all);
+  outer_curvature_.assign(all, {});
   force_.resize(all);
   // One thread: an index may stand in the list twice.
   for (const std::uint32_t i : changed) {

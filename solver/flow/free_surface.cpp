@@ -43,7 +43,7 @@ void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
 void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
                                const NeighbourList& list, const MeltProperties& properties) {
   write_surface(particles, ghosts, list, properties);
-  curvatures(list);
+  curvatures(ghosts, list);
   const std::size_t n = particles.size();
   const double stiffness = settings_.sound_speed * settings_.sound_speed;
   for_each_particle(liquid_.size(), [&](std::size_t k) {

@@ -143,6 +143,10 @@ class FreeSurfaceFlow {
     double tension = 0;  // N m-1
     double depth = 0;    // m, below the surface; zero where there is no interface
   };
+  /// What lower layers take their curvature from; zero but in the outermost layer of the melt.
+  struct alignas(16) CurvatureRecord {
+    double curvature = 0, weight = 0;  // times the weight, m^(d-2); m^(d-1)
+  };
   /// Forces; two cache lines.
   struct alignas(64) ForceRecord {
     double x = void_position, y = void_position, z = void_position, vx = 0, vy = 0, vz = 0;
@@ -159,7 +163,8 @@ class FreeSurfaceFlow {
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
                      const NeighbourList& list, const MeltProperties& properties);
   void leave_disorder_out(const NeighbourList& list);
-  void curvatures(const NeighbourList& list);
+  void curvatures(const std::vector<Ghost>& ghosts, const NeighbourList& list);
+  void curvatures_below(const NeighbourList& list);
   void missing_gradients(const NeighbourList& list);
   void walls(const std::vector<Ghost>& ghosts);
   void forces(const Particles& particles, const NeighbourList& list,
@@ -176,6 +181,7 @@ class FreeSurfaceFlow {
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;
+  std::vector<CurvatureRecord> outer_curvature_;
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;

@@ -112,12 +112,14 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   });
 }
 
-void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
+void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const NeighbourList& list) {
   const SurfaceRecord* all = surface_.data();
+  const double h = kernel_.smoothing_length, outermost = outermost_depth_ * h;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_[member];
     const SurfaceRecord& own = all[i];
     area_[i] = pull_[i] = curvature_[i] = 0;
+    outer_curvature_[i] = {};
     limited_[i] = 0;
     if (own.depth <= 0) {
       return;
@@ -127,7 +129,9 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
       const std::uint32_t* j = &list.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
-      const Lane factor = where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0));
+      const Lane factor =
+          where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0)) *
+          normal_weight(depth, outermost, below_outermost * h);
       const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
       const Lane tx = dx - across * own.nx, ty = dy - across * own.ny, tz = dz - across * own.nz;
       const Lane bend = factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +
@@ -143,13 +147,47 @@ void FreeSurfaceFlow::curvatures(const NeighbourList& list) {
     sums.inset = sum_lanes(inset);
     const Vector& c = colour_[i];
     const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-    const double h = kernel_.smoothing_length;
     bool limited = false;
     curvature_[i] = surface_curvature(sums, dimensions_, depth_.per_curvature(size * h) * h * h,
                                       spacing_, limited);
     limited_[i] = limited ? 1 : 0;
     pull_[i] = 2 * size * motion_[i].volume;
     area_[i] = surface_area(pull_[i], curvature_[i], own.depth);
+    if (own.depth <= outermost) {
+      outer_curvature_[i] = {pull_[i] * curvature_[i], pull_[i]};
+    }
+  });
+  for (const std::uint32_t g : near_ghosts_) {
+    outer_curvature_[role_.size() + g] = outer_curvature_[ghosts[g].source];
+  }
+  curvatures_below(list);
+}
+
+/// Below the outermost layer, the mean of those of the outermost layer in reach: the own normal is
+/// too uncertain there. Under a sphere both are the same. Where only a wall's surface is in reach,
+/// the own one stays.
+void FreeSurfaceFlow::curvatures_below(const NeighbourList& list) {
+  const SurfaceRecord* all = surface_.data();
+  const double outermost = outermost_depth_ * kernel_.smoothing_length;
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    const SurfaceRecord& own = all[i];
+    if (own.depth <= outermost) {
+      return;
+    }
+    Lane sum = 0, weight = 0;
+    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list.index[k];
+      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
+      const Lane near = kernel_.value(r);
+      sum += near * gather(outer_curvature_.data(), j, &CurvatureRecord::curvature);
+      weight += near * gather(outer_curvature_.data(), j, &CurvatureRecord::weight);
+    }
+    if (const double whole = sum_lanes(weight); whole > 0) {
+      curvature_[i] = sum_lanes(sum) / whole;
+      area_[i] = surface_area(pull_[i], curvature_[i], own.depth);
+      limited_[i] = 0;
+    }
   });
 }
 
