@@ -43,7 +43,9 @@ def small_result(run, folder, seconds):
     kept["steady_state"] = result.get("steady_state", {}).get("pool_length")
     kept.update(flow_numbers(folder, result))
     acceptance = result.get("acceptance", {})
-    kept["clumped_fraction"] = acceptance.get("ever_melted", {}).get("clumped_fraction", 0.0)
+    # The melt clumps; what has frozen keeps its distance, so over all that ever melted the share is diluted.
+    kept["clumped_fraction"] = max((acceptance.get(which, {}).get("clumped_fraction", 0.0)
+                                    for which in ("liquid", "ever_melted")), default=0.0)
     kept["acceptance"] = acceptance
     kept["limiters"] = result.get("limiters", {})
     kept["energy_relative_error"] = result["energy_relative_error"]
