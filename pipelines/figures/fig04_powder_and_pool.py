@@ -65,10 +65,11 @@ def main():
         sections.plot_field(panels[2, 0], panels[2, 1], run, hot, "temperature", "y", "temperature [K]", liquidus)
         panels[2, 0].set_title(f"c  Temperature at {time:.0f} us, section y = 0; line: liquidus of 316L")
         top = sections.plot_field(panels[3, 0], panels[3, 1], run, last, "concentration", "y", "AlSi10Mg [wt%]",
-                                  scale=100.0)
+                                  scale=100.0, floor=0.01)
         panels[3, 0].set_title(f"d  AlSi10Mg after solidification, at {cooled:.0f} us, section y = 0")
+    panels[1, 0].set(xlim=panels[2, 0].get_xlim(), ylim=panels[2, 0].get_ylim())
     for axes in panels[:2, 1]:
-        axes.remove()
+        axes.axis("off")  # stays, so that all four panels are equally wide
     panels[1, 0].legend(loc="lower right", ncols=3, handlelength=1.2, frameon=True, framealpha=0.9)
 
     style.save(figure, given.output, "Powder bed and melt pool (the paper's Fig. 4)",

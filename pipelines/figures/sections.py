@@ -5,7 +5,7 @@ import artifact
 import numpy as np
 import style
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import LogNorm, Normalize
 
 MICRON = 1e-6
 AXES = {"x": 0, "y": 1, "z": 2}
@@ -92,13 +92,18 @@ def raster(run, snapshot, field, normal, at=0.0, scale=1.0):
     return values, (left, left + columns * pixel, below, below + rows * pixel), first, second
 
 
-def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None, scale=1.0, at=0.0):
+def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None, scale=1.0, at=0.0, floor=None):
     """One field in a section, its colours explained in `bar_axes`, with the contour line of one value; returns
-    the largest value shown."""
+    the largest value shown. With a `floor` the colours are logarithmic from there on, and what is less has the
+    floor's colour."""
     values, extent, first, second = raster(run, snapshot, field, normal, at, scale)
     lowest, highest = np.nanmin(values), np.nanmax(values)
+    norm = Normalize(lowest, max(highest, lowest + 1e-9))
+    if floor is not None:
+        values = np.fmax(values, np.where(np.isnan(values), np.nan, floor))
+        norm = LogNorm(floor, max(highest, 10 * floor))
     colours = axes.imshow(values, extent=extent, origin="lower", cmap=style.FIELD_COLOURS, interpolation="nearest",
-                          norm=Normalize(lowest, max(highest, lowest + 1e-9)))
+                          norm=norm)
     names = {"x": "scan direction x [um]", "y": "y [um]", "z": "height z [um]"}
     axes.set(xlim=extent[:2], ylim=extent[2:], aspect="equal", xlabel=names[first], ylabel=names[second])
     axes.grid(False)
@@ -106,5 +111,5 @@ def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None
         line = {"levels": [contour], "extent": extent, "origin": "lower"}
         axes.contour(values, colors="white", linewidths=1.4, **line)
         axes.contour(values, colors="black", linewidths=0.5, linestyles="--", **line)
-    axes.figure.colorbar(colours, cax=bar_axes, label=label)
+    axes.figure.colorbar(colours, cax=bar_axes, label=label, extend="neither" if floor is None else "min")
     return float(highest)
