@@ -3,11 +3,11 @@
 
 FIGURE_FOLDER := $(WORK)/figures
 LOOK := $(addprefix pipelines/figures/,style.py artifact.py)
-FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg \
+FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg \
   fig04_powder_and_pool.svg fig05_length.svg fig06_flow.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg \
   fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg)
 
-$(FIGURE_FOLDER)/fig01_diffusion.svg $(FIGURE_FOLDER)/fig02_conduction.svg $(FIGURE_FOLDER)/fig03_flow_cases.svg: \
+$(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg): \
     $(VERIFICATION) pipelines/figures/verification.py
 $(FIGURE_FOLDER)/fig04_powder_and_pool.svg: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 \
     pipelines/figures/sections.py

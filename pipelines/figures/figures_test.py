@@ -21,6 +21,7 @@ INPUTS = {
     "fig01_diffusion": ["verification.json"],
     "fig02_conduction": ["verification.json"],
     "fig03_flow_cases": ["verification.json"],
+    "fig03b_free_surface": ["verification.json"],
     "fig04_powder_and_pool": ["work/powder_5wt/powder.h5", "work/track_5wt/run.h5"],
     "fig05_length": [f"work/track_{track}/result.json" for track in TRACKS]
                     + [f"work/track_{track}/thermography/summary.json" for track in TRACKS],
