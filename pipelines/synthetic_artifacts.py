@@ -143,7 +143,7 @@ def verification(path, profiles):
                        ("species_stripe_as_printed", "species_stripe"), ("conduction_slab", "conduction_slab"),
                        ("conduction_contact", "conduction_contact"), ("stefan_0.1", "stefan"),
                        ("stefan_0.5", "stefan"), ("stefan_1", "stefan"), ("couette", "channel"),
-                       ("laplace_drop_3d", "laplace_drop")):
+                       ("laplace_drop_3d", "laplace_drop"), ("oscillating_drop", "oscillating_drop")):
         table = profiles / name / "profile.csv"
         table.parent.mkdir(exist_ok=True)
         with table.open("w", newline="") as file:

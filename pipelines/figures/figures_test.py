@@ -63,6 +63,17 @@ class Figures(unittest.TestCase):
     def test_every_script_is_tested(self):
         self.assertEqual(sorted(INPUTS), sorted(path.stem for path in HERE.glob("fig[0-9]*.py")))
 
+    def test_a_profile_of_two_lines_is_drawn_as_two(self):
+        """The cavity's table holds u along one middle line, then v along the other."""
+        import numpy as np
+        import verification
+        place = np.array([0.1, 0.5, 0.9, 0.05, 0.5, 0.95])
+        drawn = verification.curves(place, np.arange(6.0))
+        self.assertEqual([list(line) for line, _ in drawn], [[0.1, 0.5, 0.9], [0.05, 0.5, 0.95]])
+        scattered = verification.curves(np.array([3.0, 1, 4, 1, 5, 2, 6, 0, 7, 1]), np.arange(10.0))
+        self.assertEqual(len(scattered), 1)
+        self.assertEqual(list(scattered[0][0]), [0, 1, 1, 1, 2, 3, 4, 5, 6, 7])
+
     def test_equal_artifacts_give_equal_bytes_and_units_on_every_axis(self):
         for name, inputs in INPUTS.items():
             with self.subTest(figure=name):
