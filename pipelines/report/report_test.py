@@ -121,7 +121,7 @@ class Report(unittest.TestCase):
     def test_the_page_says_what_agrees_differs_and_is_pending_and_loads_nothing(self):
         self.assertEqual(self.build("page").returncode, 0)
         page = (self.root / "page.html").read_text(encoding="utf-8")
-        for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "10 of 10 cases", "Figure 2.",
+        for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "11 of 11 cases", "Figure 2.",
                       "growing; tends to 252", "synthetic extra 0.25", "Synthetic resolution", "not run yet:\nunmade",
                       "synthetic none", "length 5.7 %"):
             self.assertIn(words, page)
