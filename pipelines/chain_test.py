@@ -148,7 +148,13 @@ class Studies(unittest.TestCase):
             kept = json.loads((root / "results/flow_off.json").read_text())
             for key in ("length_um", "width_sd_um", "peak_temperature_K", "evaporated_share", "revision", "inputs"):
                 self.assertTrue(kept[key] or kept[key] == 0, key)
+            self.assertEqual(len(kept["witness"]), 64)
             self.assertIn("nothing to do", self.studies(root, "--only", "flow_off").stdout)
+            # Other code, but the same numbers: nothing to renew. Other numbers: once more.
+            for changed, words in (({"revision": "0" * 12}, "nothing to do"),
+                                   ({"revision": "0" * 12, "witness": "0" * 64}, "1 runs to make")):
+                (root / "results/flow_off.json").write_text(json.dumps({**kept, **changed}))
+                self.assertIn(words, self.studies(root, "--only", "flow_off", "--again").stdout)
             done = self.studies(root, "--only", "no_such_run")
             self.assertEqual(done.returncode, 2)
             self.assertIn("no_such_run", done.stderr)

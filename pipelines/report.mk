@@ -33,15 +33,23 @@ $(CIRCUMSTANCES): always | packages
 	@mkdir -p $(@D)
 	@$(PYTHON) pipelines/report/circumstances.py --profile $(PROFILE) --spacing '$(SPACINGS)' --output $@
 
+# What the present program makes of a short track: studies of other code that makes the same are not stale.
+WITNESS := $(WORK)/witness.json
+$(WITNESS): pipelines/witness.py $(BIN)/meltproof-solve $(BIN)/meltproof-powder $(MATERIALS) \
+    solver/cases/powder_1wt.toml solver/cases/track_1wt.toml | packages
+	@mkdir -p $(@D)
+	@$(STAGE) 'witness of the solver' $(PYTHON) $< --solver $(BIN)/meltproof-solve --powder $(BIN)/meltproof-powder \
+	  --output $@
+
 REPORT := reports/validation.pdf
 REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)
 
 $(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(STUDIES) $(RESULTS) $(FILMED) \
-    $(CIRCUMSTANCES) pipelines/figures/track.py \
+    $(CIRCUMSTANCES) $(WITNESS) pipelines/figures/track.py \
     $(wildcard reports/template/*) $(wildcard pipelines/report/*.py) pipelines/figures/artifact.py
 	@$(STAGE) 'report' $(PYTHON) pipelines/report/build_report.py --work $(WORK) --figures $(FIGURE_FOLDER) \
 	  --verification $(VERIFICATION) --comparison $(COMPARISON) --studies $(STUDIES) --circumstances $(CIRCUMSTANCES) \
-	  --template reports/template --output reports/validation
+	  --witness $(WITNESS) --template reports/template --output reports/validation
 
 .PHONY: figures report validate readme-picture
 figures: $(FIGURES)

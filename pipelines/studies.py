@@ -2,7 +2,7 @@
 """Makes the runs of pipelines/studies.toml one after another and keeps a small result of each.
 
 A run that has its result is not made again, so the job can be stopped and started at will; --again renews
-those that other code has made. The results are small, are committed, and say which revision made them.
+those that other code has made, unless its witness (witness.py) is the same. The results are small, are committed, and say which revision made them.
 """
 
 import argparse
@@ -17,8 +17,10 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "figures"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
 from artifact import MissingArtifact, read_json  # noqa: E402
 from track import flow_numbers  # noqa: E402
+from witness import witness  # noqa: E402
 
 EXTENTS = ("pool_length", "pool_width", "pool_depth", "any_liquid_length")
 
@@ -82,6 +84,7 @@ def make(given, run):
         raise MissingArtifact(f"the run {run['name']} ended with status {done.returncode}: "
                               f"{last[-1] if last else 'it said nothing'} (all of it in {folder / 'log.txt'})")
     kept = small_result(run, folder, time.monotonic() - started)
+    kept["witness"] = given.witness
     place = Path(given.results) / f"{run['name']}.json"
     place.parent.mkdir(parents=True, exist_ok=True)
     partial = place.with_suffix(".tmp")
@@ -92,13 +95,13 @@ def make(given, run):
 
 def to_do(given, runs):
     """The runs that are wanted, in their order, and the number of those that are there already."""
-    revision = solver_revision(given.solver) if given.again else None
+    revision = solver_revision(given.solver)
     wanted, there = [], 0
     for run in runs:
         place = Path(given.results) / f"{run['name']}.json"
         kept = read_json(place) if place.is_file() else None
         finished = kept is not None and kept.get("settings") == run.get("set", []) and not (
-            given.again and kept.get("revision") != revision)
+            given.again and kept.get("revision") != revision and kept.get("witness") != given.witness)
         there += finished
         if not finished and (not given.only or run["name"] in given.only):
             wanted.append(run)
@@ -128,6 +131,7 @@ def main():
     unknown = set(given.only) - {run["name"] for run in runs}
     if unknown:
         raise MissingArtifact(f"{given.declaration} declares no run {', '.join(sorted(unknown))}.")
+    given.witness = witness(given.solver, given.powder)
     wanted, there = to_do(given, runs)
     if not wanted:
         print(f"nothing to do: all {there} results of the studies are in {given.results}")

@@ -163,7 +163,8 @@ def report_facts(given):
     root = HERE.parent.parent
     tracks = [describe(track, rows, root) for track in read_tracks(given.work)]
     made_by = sorted({track["revision"] for track in tracks})
-    studies = read_studies(given.studies, made_by[-1] if len(made_by) == 1 else None, root)
+    studies = read_studies(given.studies, made_by[-1] if len(made_by) == 1 else None, root,
+                           value(read_json(given.witness), "witness", given.witness) if given.witness else None)
     artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.studies, given.comparison)
     facts = read_json(given.circumstances)
     revisions = sorted({made["revision"] for made in artifacts})
@@ -208,6 +209,8 @@ def main():
     arguments.add_argument("--verification", required=True, help="verification.json")
     arguments.add_argument("--comparison", required=True, help="validation.json")
     arguments.add_argument("--studies", required=True, help="studies.json")
+    arguments.add_argument("--witness", help="witness.json of the program that made the tracks: studies of other code "
+                                             "that has the same are not stale")
     arguments.add_argument("--circumstances", required=True, help="circumstances.json")
     arguments.add_argument("--template", required=True, help="folder with report.html, report.css, errata.toml")
     arguments.add_argument("--output", required=True, help="path without suffix; .html and .pdf are written")

@@ -81,6 +81,14 @@ class Stale(unittest.TestCase):
         self.assertTrue(study_table.is_stale({**run, "inputs": []}, "no-such-revision", ROOT))
         self.assertTrue(study_table.is_stale({"revision": "a-dirty", "inputs": []}, "a", ROOT))
 
+    def test_other_code_with_the_same_witness_makes_nothing_stale(self):
+        run = {"revision": "synthetic", "inputs": [], "witness": "same"}
+        self.assertFalse(study_table.is_stale(run, "no-such-revision", ROOT, "same"))
+        self.assertTrue(study_table.is_stale(run, "no-such-revision", ROOT, "other"))
+        self.assertTrue(study_table.is_stale({**run, "witness": None}, "no-such-revision", ROOT, None))
+        changed = {**run, "inputs": [{"path": "Makefile", "sha256": "0" * 64}]}
+        self.assertTrue(study_table.is_stale(changed, "no-such-revision", ROOT, "same"))
+
 
 class Report(unittest.TestCase):
     @classmethod

@@ -28,9 +28,11 @@ def code_differs(one, other, root):
     return done.returncode != 0
 
 
-def is_stale(run, revision, root):
-    """Whether the code, or an input that the run read, has changed since."""
-    if code_differs(run["revision"], revision, root):
+def is_stale(run, revision, root, witness=None):
+    """Whether the code, or an input that the run read, has changed since. `witness` is that of the present program
+    (pipelines/witness.py): where the run's is the same, other code has made the same numbers."""
+    same_numbers = witness is not None and run.get("witness") == witness
+    if not same_numbers and code_differs(run["revision"], revision, root):
         return True
     for entry in run["inputs"]:
         path = Path(root) / entry["path"]
@@ -51,12 +53,12 @@ def resolution_rows(entry):
     return rows
 
 
-def read_studies(path, revision, root):
+def read_studies(path, revision, root, witness=None):
     """Resolutions, tables of sensitivity, and the shares of u_num, for the template.
 
-    `revision` is the one that made the tracks of this report; a run of another one is marked stale."""
+    `revision` is the one that made the tracks of this report; a run of another one is marked stale, unless it has the same `witness`."""
     summary = read_json(path)
-    by_name = {run["name"]: {**run, "stale": is_stale(run, revision, root)} for run in value(summary, "runs", path)}
+    by_name = {run["name"]: {**run, "stale": is_stale(run, revision, root, witness)} for run in value(summary, "runs", path)}
     resolutions, tables, missing = [], [], []
     for entry in value(summary, "series", path):
         missing += [name for name in entry["missing"] if name not in missing]
