@@ -100,7 +100,7 @@ def plot_field(axes, bar_axes, run, snapshot, field, normal, label, contour=None
     lowest, highest = np.nanmin(values), np.nanmax(values)
     norm = Normalize(lowest, max(highest, lowest + 1e-9))
     if floor is not None:
-        values = np.fmax(values, np.where(np.isnan(values), np.nan, floor))
+        values = np.maximum(values, floor)  # what is no metal stays no number
         norm = LogNorm(floor, max(highest, 10 * floor))
     colours = axes.imshow(values, extent=extent, origin="lower", cmap=style.FIELD_COLOURS, interpolation="nearest",
                           norm=norm)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The two panels in which a verification case is shown: its profile, and its error against the spacing."""
+"""The panels in which verification cases are shown, profile and error against the spacing, and figures of them."""
 
 import argparse
 import textwrap
@@ -40,8 +40,9 @@ def of_spacing(micrometres):
 
 def curves(position, exact):
     """The exact curves of a profile: a table may hold several, one after another, each with its places in order."""
-    if np.any(np.diff(position) < 0) and np.sum(np.diff(position) < 0) < 4:
-        cuts = np.flatnonzero(np.diff(position) < 0) + 1
+    cuts = np.flatnonzero(np.diff(position) < 0) + 1
+    # Particles in no order step back all the time, curves one after another only where the next one begins.
+    if 0 < len(cuts) < 4:
         return list(zip(np.split(position, cuts), np.split(exact, cuts)))
     order = np.argsort(position, kind="stable")
     return [(position[order], exact[order])]

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -215,8 +214,6 @@ TEST(FreeSurfaceFlow, PressureAndViscosityNeitherMoveNorTurnADropAsAWhole) {
   }
 }
 
-// Curvature times area is no sum over pairs, so it may push a drop as a whole; it must do so by
-// little: a drop that oscillates gathers a speed below a fiftieth of its surface's.
 // Of a disordered drop: the sums over the arrangement are the same for all velocities, so the
 // strength shows |grad v|; the outermost layers are left where they are.
 TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
@@ -272,43 +269,8 @@ TEST(FreeSurfaceFlow, TheTransportVelocityFollowsShearAndSparesTheSurface) {
   EXPECT_GT(deep, 50U);
 }
 
-// Ten rows with every particle moved by up to a tenth of a spacing. What the surface tension gains
-// from such disorder must be less than viscosity takes: with curvatures from the normals of the
-// second row, or with its own there, 0.3 to 0.6 m/s stay for ever.
-TEST(FreeSurfaceFlow, ADisturbedFilmComesToRest) {
-  VerificationCase c = melt_case();
-  c.dimensions = 2;
-  c.viscosity = 0.02;
-  constexpr double fine = 10e-6 / 3;
-  constexpr std::int64_t rows = 10, columns = 24;
-  const Mixture mixture = melt_and_wall(c);
-  Particles particles =
-      fill_cells(c, fine, mixture, {0, -4, 0}, {columns, rows, 1},
-                 [](const Vector& at) { return at[1] < 0 ? Fill::wall : Fill::melt; });
-  std::mt19937 random(1);
-  for (Vector& at : particles.position) {
-    for (std::size_t d = 0; d < 2 && at[1] > 0; ++d) {
-      at[d] += fine * 0.1 * (static_cast<double>(random()) / 0x1p31 - 1);
-    }
-  }
-  Model model = surface_model(c);
-  model.domain.lower = {0, -4 * fine, 0};
-  model.domain.upper = {columns * fine, 2 * rows * fine, 0};
-  model.domain.face[0] = {Face::periodic, Face::periodic};
-  Engine engine(std::move(particles), mixture, Diffusivity{}, model);
-  start_at_rest(engine, [](const Vector&) { return 0; });
-  double late = 0;
-  int steps = 0;
-  while (engine.time() < 40e-6) {
-    engine.step(40e-6);
-    if (engine.time() > 20e-6) {
-      late += std::pow(melt_motion(engine).root_mean_square, 2);
-      ++steps;
-    }
-  }
-  EXPECT_LT(std::sqrt(late / steps), 0.1);
-}
-
+// Curvature times area is no sum over pairs, so it may push a drop as a whole; it must do so by
+// little: a drop that oscillates gathers a speed below a fiftieth of its surface's.
 TEST(FreeSurfaceFlow, SurfaceTensionHardlyMovesADropAsAWhole) {
   const VerificationCase c = melt_case();
   Engine engine = make_drop(c, surface_model(c), 8 * dx, false);

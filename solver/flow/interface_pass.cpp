@@ -129,9 +129,8 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
       const std::uint32_t* j = &list.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
-      const Lane factor =
-          where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0)) *
-          normal_weight(depth, outermost, below_outermost * h);
+      const Lane factor = where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0)) *
+                          normal_weight(depth, outermost, below_outermost * h);
       const Lane across = dx * own.nx + dy * own.ny + dz * own.nz;
       const Lane tx = dx - across * own.nx, ty = dy - across * own.ny, tz = dz - across * own.nz;
       const Lane bend = factor * ((own.nx - gather(all, j, &SurfaceRecord::nx)) * tx +

@@ -204,4 +204,12 @@ TEST(DensityDiffusion, LeavesALinearProfileAndOnlyMovesDensityAbout) {
   EXPECT_DOUBLE_EQ(density_diffusion_pair(7010.0, 7000.0, 1.0, v_j, -0.3), -2 * v_j * 9 * 0.3);
 }
 
+TEST(NormalWeight, IsWholeOutsideAndFadesToNothingAtTheSecondLayer) {
+  EXPECT_EQ(normal_weight(0.5, 1.0, 1.5), 1);
+  EXPECT_EQ(normal_weight(1.0, 1.0, 1.5), 1);
+  EXPECT_DOUBLE_EQ(normal_weight(1.2, 1.0, 1.5), 0.6);
+  EXPECT_EQ(normal_weight(1.5, 1.0, 1.5), 0);
+  EXPECT_EQ(normal_weight(1.8, 1.0, 1.5), 0);
+}
+
 }  // namespace meltproof::solver
