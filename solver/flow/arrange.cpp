@@ -67,7 +67,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
       near_ghosts_.push_back(g);
     }
   }
-  for (auto* field : {&area_, &pull_, &curvature_, &pressure_}) {
+  for (auto* field : {&filled_, &area_, &exposed_, &pull_, &curvature_, &pressure_}) {
     field->resize(n, 0.0);
   }
   for (auto* field :
@@ -101,7 +101,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
     }
     if (role_[i] != 1) {
       density_gradient_[i] = {};
-      area_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
+      area_[i] = exposed_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
       normal_[i] = acceleration_[i] = shift_[i] = missing_gradient_[i] = tension_gradient_[i] = {};
     }
     if (role_[i] == 2) {

@@ -14,16 +14,19 @@ void FreeSurfaceFlow::colour_gradients(const NeighbourList& list,
   for_each_particle(members.size(), [&](std::size_t member) {
     const std::uint32_t i = members[member];
     const MotionRecord& own = all[i];
-    Lane cx = 0, cy = 0, cz = 0;
+    Lane filled = 0, cx = 0, cy = 0, cz = 0;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
-      const Lane weight = gather(all, j, &MotionRecord::volume) * kernel_.slope(r) / r;
+      const Lane volume = gather(all, j, &MotionRecord::volume);
+      const Lane weight = volume * kernel_.slope(r) / r;
+      filled += volume * kernel_.value(r);
       cx += weight * dx;
       cy += weight * dy;
       cz += weight * dz;
     }
     colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
+    filled_[i] = sum_lanes(filled) / lattice_sum_;
   });
 }
 
@@ -71,7 +74,7 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
     const MotionRecord& own = all[i];
     const DensityRecord& gradient = gradients[i];
     const double reference = particles.mass[i] / particles.volume[i];
-    Lane compression = 0, diffused = 0, summed = 0, cx = 0, cy = 0, cz = 0;
+    Lane compression = 0, diffused = 0, summed = 0, filled = 0, cx = 0, cy = 0, cz = 0;
     for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
       const std::uint32_t* j = &list.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
@@ -92,15 +95,16 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
       diffused += where_positive(
           density, density_diffusion_pair(Lane(own.density), density, smooth, volume, factor),
           Lane(0.0));
-      if (relax) {
-        // Walls take the melt's density at rest.
-        summed += volume * where_positive(density, density, Lane(reference)) * kernel_.value(r);
-      }
+      const Lane share = volume * kernel_.value(r);
+      filled += share;
+      // Walls take the melt's density at rest.
+      summed += share * where_positive(density, density, Lane(reference));
       cx += volume * slope_over_r * dx;
       cy += volume * slope_over_r * dy;
       cz += volume * slope_over_r * dz;
     }
     colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
+    filled_[i] = sum_lanes(filled) / lattice_sum_;
     double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
     if (relax) {
       const double sum = (sum_lanes(summed) + particles.mass[i] * at_centre) / lattice_sum_;

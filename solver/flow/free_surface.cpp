@@ -27,6 +27,7 @@ FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpli
       }
     }
   }
+  alone_ = kernel.value(0.0) / lattice_sum_;
   lattice_sum_ *= std::pow(spacing, dimensions);
 }
 
@@ -109,7 +110,7 @@ FlowMemory FreeSurfaceFlow::memory() const {
   for (const std::uint32_t i : liquid_) {
     memory.acceleration.push_back(acceleration_[i]);
     memory.shift.push_back(shift_[i]);
-    memory.area.push_back(area_[i]);
+    memory.area.push_back(exposed_[i]);
     memory.pressure.push_back(pressure_[i]);
   }
   return memory;
@@ -120,7 +121,7 @@ void FreeSurfaceFlow::remember(const FlowMemory& memory, const LimiterCounts& li
     const std::uint32_t i = liquid_[k];
     acceleration_[i] = memory.acceleration[k];
     shift_[i] = memory.shift[k];
-    area_[i] = memory.area[k];
+    exposed_[i] = memory.area[k];
     pressure_[i] = memory.pressure[k];
   }
   limiters_ = limiters;

@@ -111,8 +111,9 @@ class FreeSurfaceFlow {
   /// Takes it back, once arrange() has found the same liquid particles.
   void remember(const FlowMemory& memory, const LimiterCounts& limiters);
 
-  /// Surface area of a particle, m^(d-1), see surface_area(); zero inside. Liquid particles only.
-  const std::vector<double>& area() const { return area_; }
+  /// Area through which a particle gives off heat, m^(d-1), see exposed_area(); zero inside. Liquid
+  /// particles only.
+  const std::vector<double>& area() const { return exposed_; }
   const std::vector<double>& pressure() const { return pressure_; }    ///< Pa
   const std::vector<double>& curvature() const { return curvature_; }  ///< 1/m, at the surface
   const std::vector<Vector>& normal() const { return normal_; }        ///< outward, zero inside
@@ -185,9 +186,11 @@ class FreeSurfaceFlow {
   std::vector<ForceRecord> force_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;
-  double lattice_sum_ = 1;  // sum V W of the undisturbed lattice
-  double outermost_depth_;  // over h
-  std::vector<double> area_, curvature_, pressure_;
+  double lattice_sum_ = 1;      // sum V W of the undisturbed lattice
+  double outermost_depth_;      // over h
+  double alone_ = 0;            // the share of it that a particle itself has
+  std::vector<double> filled_;  // share of the kernel that neighbours fill
+  std::vector<double> area_, exposed_, curvature_, pressure_;
   std::vector<Vector> missing_gradient_;  // Pa m-1, of the pressure along the surface
   std::vector<double> pull_;  // m^(d-1), 2 |grad c| V: what a pressure on the surface acts on
   std::vector<std::uint8_t> limited_, disorder_;

@@ -160,6 +160,12 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
     outer_curvature_[role_.size() + g] = outer_curvature_[ghosts[g].source];
   }
   curvatures_below(list);
+  // Forces take area_: what blows off a ball of spray all around does not push it.
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    const std::uint32_t i = liquid_[member];
+    exposed_[i] =
+        exposed_area(area_[i], filled_[i] + alone_, alone_, motion_[i].volume, dimensions_);
+  });
 }
 
 /// Below the outermost layer, the mean of those of the outermost layer in reach: the own normal is

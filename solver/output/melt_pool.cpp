@@ -28,21 +28,35 @@ void for_each_touching(const Particles& particles, const NeighbourList& list, st
   }
 }
 
-std::vector<std::uint32_t> connected_to(std::uint32_t seed, const Particles& particles,
-                                        const NeighbourList& list,
-                                        const std::vector<double>& level) {
+/// Of the connected regions where `level` is not negative, the one of the largest volume; the first
+/// one of equal ones. Not the one around the hottest particle: that may be spray.
+std::vector<std::uint32_t> largest_region(const Particles& particles, const NeighbourList& list,
+                                          const std::vector<double>& level) {
   std::vector<bool> seen(particles.size(), false);
-  std::vector<std::uint32_t> region{seed};
-  seen[seed] = true;
-  for (std::size_t at = 0; at < region.size(); ++at) {
-    for_each_touching(particles, list, region[at], [&](std::uint32_t j) {
-      if (!seen[j] && level[j] >= 0) {
-        seen[j] = true;
-        region.push_back(j);
-      }
-    });
+  std::vector<std::uint32_t> largest, region;
+  double largest_volume = 0;
+  for (std::uint32_t seed = 0; seed < particles.size(); ++seed) {
+    if (seen[seed] || !(level[seed] >= 0)) {
+      continue;
+    }
+    region.assign(1, seed);
+    seen[seed] = true;
+    double volume = 0;
+    for (std::size_t at = 0; at < region.size(); ++at) {
+      volume += particles.volume[region[at]];
+      for_each_touching(particles, list, region[at], [&](std::uint32_t j) {
+        if (!seen[j] && level[j] >= 0) {
+          seen[j] = true;
+          region.push_back(j);
+        }
+      });
+    }
+    if (volume > largest_volume) {
+      largest_volume = volume;
+      largest.swap(region);
+    }
   }
-  return region;
+  return largest;
 }
 
 }  // namespace
@@ -50,20 +64,18 @@ std::vector<std::uint32_t> connected_to(std::uint32_t seed, const Particles& par
 Extent measure_extent(const Particles& particles, const NeighbourList& neighbours,
                       const std::vector<double>& level, bool connected) {
   Extent extent;
-  const auto hottest = std::max_element(level.begin(), level.end());
-  if (hottest == level.end() || !(*hottest >= 0)) {
-    return extent;
-  }
   std::vector<std::uint32_t> region;
   if (connected) {
-    region = connected_to(static_cast<std::uint32_t>(hottest - level.begin()), particles,
-                          neighbours, level);
+    region = largest_region(particles, neighbours, level);
   } else {
     for (std::uint32_t i = 0; i < particles.size(); ++i) {
       if (level[i] >= 0) {
         region.push_back(i);
       }
     }
+  }
+  if (region.empty()) {
+    return extent;
   }
   Vector low, high;
   low.fill(std::numeric_limits<double>::infinity());

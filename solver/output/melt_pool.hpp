@@ -20,9 +20,8 @@ struct Extent {
 /// Extent of the region where `level` is not negative, bounded by the points at which it crosses
 /// zero between a particle inside and a neighbour outside (linear interpolation), so that the
 /// result does not jump by whole spacings.
-/// @param level per particle, for example T - T_ref; @param connected keep only the connected
-/// region
-///        (neighbours within 1.8 spacings) around the particle of the highest level.
+/// @param level per particle, for example T - T_ref; @param connected keep only the largest
+/// connected region by volume (neighbours within 1.8 spacings): the hottest particle may be spray.
 Extent measure_extent(const Particles& particles, const NeighbourList& neighbours,
                       const std::vector<double>& level, bool connected);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <numbers>
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -311,6 +312,43 @@ TEST(Flow, AParticleThatIsThrownOutStopsTheRunAndIsNamed) {
     EXPECT_GT(moved, 1);
     EXPECT_LT(moved, 20);
   }
+}
+
+// A single particle in flight cools as a sphere of its volume does: m dh/dt = -A (q_evaporation +
+// q_radiation). Without an area of its own it would heat under the beam without end.
+TEST(Flow, SprayCoolsAsASphereDoes) {
+  const Mixture mixture = paper_mixture();
+  const double dx = 10e-6, volume = dx * dx * dx, hot = 3600;
+  Particles particles;
+  particles.spacing = dx;
+  particles.add(0, {0, 0, 0.5e-3}, mixture.density(0) * volume, volume, mixture.enthalpy(hot, 0), 0,
+                Origin::plate);
+  Model model;
+  model.conduction = model.species = false;
+  model.flow = FlowSettings{};
+  model.flow->gravity = {};
+  model.surface_loss.emplace();
+  model.domain.lower = {-1e-3, -1e-3, -1e-3};
+  model.domain.upper = {1e-3, 1e-3, 1e-3};
+  Engine engine(std::move(particles), mixture, liquid_metal(), model);
+  const double end = 20e-6;
+  for (int k = 1; k <= 200; ++k) {  // below the step that stability alone would allow
+    while (engine.time() < k * end / 200) {
+      engine.step(k * end / 200);
+    }
+  }
+  const double area = std::cbrt(36 * std::numbers::pi * volume * volume);
+  const double mass = mixture.density(0) * volume;
+  const int steps = 20000;
+  double enthalpy = mixture.enthalpy(hot, 0), temperature = hot;
+  for (int k = 0; k < steps; ++k) {
+    enthalpy -= end / steps * area / mass *
+                (evaporation_flux(temperature, 0, mixture, 101325) +
+                 radiation_flux(temperature, mixture.emissivity(0), 293.15));
+    temperature = mixture.temperature(enthalpy, 0);
+  }
+  ASSERT_LT(temperature, 3300);
+  EXPECT_NEAR(engine.particles().temperature[0], temperature, 0.01 * (hot - temperature));
 }
 
 TEST(Flow, SolidStandsStillAndMeltFreezesOntoIt) {

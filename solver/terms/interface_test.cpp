@@ -4,6 +4,7 @@
 #include "solver/terms/interface.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -29,6 +30,23 @@ TEST(Interface, TheDepthBelowAPlaneIsTheInverseOfItsColourGradient) {
   }
   EXPECT_NEAR(plane_colour_gradient(0.5, 3), 0.4461, 1e-4);
   EXPECT_NEAR(plane_colour_gradient(1.5, 2), 0.0578, 1e-4);
+}
+
+// A drop of one particle evaporates from all of its sphere (circle); what has a surface, from that.
+TEST(Interface, SprayIsExposedAllAround) {
+  const double volume = 1e-15, alone = 0.175;
+  const double radius = std::cbrt(3 * volume / (4 * std::numbers::pi));
+  const double sphere = 4 * std::numbers::pi * radius * radius;
+  EXPECT_NEAR(exposed_area(0, alone, alone, volume, 3) / sphere, 1, 1e-12);
+  EXPECT_NEAR(exposed_area(0, alone, alone, 1e-10, 2), 2 * std::sqrt(std::numbers::pi * 1e-10),
+              1e-17);
+  // A pair on the lattice: each has half of the sphere of both.
+  const QuinticSpline kernel(1, 3);
+  const double pair = exposed_area(0.27e-10, alone + kernel.value(1.0), alone, volume, 3);
+  EXPECT_NEAR(pair / (sphere * std::cbrt(4.0) / 2), 1, 0.2);
+  for (const double filled : {0.5, 0.56, 0.75, 1.0, 1.1}) {
+    EXPECT_DOUBLE_EQ(exposed_area(1e-10, filled, alone, volume, 3), 1e-10);
+  }
 }
 
 // The colour gradient below a sphere (circle), by integrating the kernel over it, is that of the
