@@ -30,15 +30,31 @@ Progress::Progress(std::string what, double total, double before)
 
 Progress::~Progress() { finish(); }
 
-void Progress::update(double done, const std::string& detail) {
+bool Progress::due() {
   const auto now = Clock::now();
   const std::chrono::duration<double> since_start = now - start_, since_last = now - last_;
   const double pause = terminal_ ? 0.2 : 10.0;
   if (since_start.count() < 1.0 || since_last.count() < pause) {
-    return;
+    return false;
   }
   last_ = now;
   shown_ = true;
+  return true;
+}
+
+void Progress::say(const std::string& detail) {
+  if (due()) {
+    fmt::print(stderr, "{}{}: {}{}", terminal_ ? "\r\x1b[K" : "", what_, detail,
+               terminal_ ? "" : "\n");
+    std::fflush(stderr);
+  }
+}
+
+void Progress::update(double done, const std::string& detail) {
+  if (!due()) {
+    return;
+  }
+  const std::chrono::duration<double> since_start = last_ - start_;
   const double share = total_ > 0 ? std::min(1.0, done / total_) : 0;
   // The time left assumes a steady rate, which holds once a run is under way.
   const double here = total_ > 0 ? share - before_ / total_ : 0;

@@ -20,11 +20,15 @@ class Progress {
   /// @param done work done so far, in the units of total; @param detail a few words shown behind
   /// it.
   void update(double done, const std::string& detail = "");
+  /// For work whose amount nobody can tell: only the words, no share and no time left.
+  void say(const std::string& detail);
   /// Ends the line; called by the destructor.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Whether it is time for another line, and remembers that there was one.
+  bool due();
   std::string what_;
   double total_, before_;
   bool terminal_, shown_ = false, finished_ = false;

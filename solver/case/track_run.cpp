@@ -202,11 +202,15 @@ class TrackRun {
     run_.history += regular ? 1 : 0;
     const HistoryLine& now = run_.lines.back();
     if (!options_.quiet) {
-      progress.update(
-          std::min(engine_->time(), t_.exposure),
-          fmt::format("step {}, t {:.1f} us, dt {:.3f} us, pool {:.0f} um, peak {:.0f} K",
-                      engine_->steps(), 1e6 * now.time, 1e6 * dt, 1e6 * now.pool.length,
-                      now.peak_temperature));
+      const std::string state = fmt::format(
+          "step {}, t {:.1f} us, dt {:.3f} us, pool {:.0f} um, peak {:.0f} K", engine_->steps(),
+          1e6 * now.time, 1e6 * dt, 1e6 * now.pool.length, now.peak_temperature);
+      if (engine_->time() <= t_.exposure) {
+        progress.update(engine_->time(), state);
+      } else {
+        // Nobody knows when the last of it will be solid, only until when it would be waited for.
+        progress.say(fmt::format("beam off, freezing ({:.0f} us at most); {}", 1e6 * end(), state));
+      }
     }
     if (engine_->time() == t_.exposure) {
       // At the end all is solid: how the melt fared is measured as the beam goes off.
