@@ -46,8 +46,8 @@ def small_result(run, folder, seconds):
     kept.update(flow_numbers(folder, result))
     acceptance = result.get("acceptance", {})
     # The melt clumps; what has frozen keeps its distance, so over all that ever melted the share is diluted.
-    kept["clumped_fraction"] = max((acceptance.get(which, {}).get("clumped_fraction", 0.0)
-                                    for which in ("liquid", "ever_melted")), default=0.0)
+    kept["clumped_fraction"] = max(result.get("clumped_fraction_mean", 0.0),
+                                   acceptance.get("ever_melted", {}).get("clumped_fraction", 0.0))
     kept["acceptance"] = acceptance
     kept["limiters"] = result.get("limiters", {})
     kept["energy_relative_error"] = result["energy_relative_error"]

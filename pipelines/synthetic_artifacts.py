@@ -107,6 +107,7 @@ def run(folder, additive_mass_fraction=0.05, spacing_um=15.0, powder_layer=True)
         "pool_length_sd_um": 9.0, "pool_width_sd_um": 4.0, "pool_depth_sd_um": 3.0, "any_liquid_length_um": 260.0,
         "any_liquid_length_sd_um": 11.0, "pool_length_growth_um_per_ms": 20.0, "fusion_width_um": 118.0,
         "fusion_depth_um": 58.0, "title": "synthetic", "end_time_us": 1200.0, "all_solid_at_end": True,
+        "clumped_fraction_mean": 0.002,
         "energy_absorbed_J": 0.07, "energy_evaporated_J": 0.004,
         "steady_state": {"pool_length": {"verdict": "growing", "steady": False, "limit_um": 252.0, "u_limit_um": 4.0,
                                          "time_constant_us": 300.0}},

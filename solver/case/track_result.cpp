@@ -23,6 +23,10 @@ nlohmann::json window_json(const std::vector<HistoryLine>& lines, const TrackCas
   add("pool_width", [](const HistoryLine& l) { return l.pool.width; });
   add("pool_depth", [](const HistoryLine& l) { return l.pool.depth; });
   add("any_liquid_length", [](const HistoryLine& l) { return l.any_liquid.length; });
+  // In the window like the sizes: at one instant a single pair of a small pool would decide.
+  const WindowMean clumped = window_mean(lines, from, t.exposure,
+                                         [](const HistoryLine& l) { return l.clumped; });
+  result["clumped_fraction_mean"] = clumped.mean;
   result["window"] =
       fmt::format("mean over {:.0f} to {:.0f} us, the last {:.0f} us of the exposure", 1e6 * from,
                   1e6 * t.exposure, 1e6 * (t.exposure - from));
@@ -31,18 +35,18 @@ nlohmann::json window_json(const std::vector<HistoryLine>& lines, const TrackCas
 
 /// Width and depth of what was ever above the liquidus, between 40 and 80 % of the track, where
 /// neither its start nor its end counts: what a section through the solidified track shows.
-void add_fusion_zone(nlohmann::json& result, const TrackCase& t, const Engine& engine) {
-  const Particles& p = engine.particles();
+void add_fusion_zone(nlohmann::json& result, const TrackCase& t, const Mixture& mixture,
+                     const Particles& p) {
   std::vector<double> level(p.size());
   const double track = t.speed * t.exposure;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double x = p.position[i][0];
     const bool middle = x > 0.4 * track && x < 0.8 * track;
     // Infinitely far below, so that the cut itself makes no crossing between particles.
-    level[i] = middle ? p.peak_temperature[i] - engine.mixture().liquidus(0)
+    level[i] = middle ? p.peak_temperature[i] - mixture.liquidus(0)
                       : -std::numeric_limits<double>::infinity();
   }
-  const Extent zone = measure_extent(p, engine.neighbours(), level, true);
+  const Extent zone = measure_extent(p, make_neighbours(p, {}, touching * p.spacing), level, true);
   result["fusion_width_um"] = 1e6 * zone.width;
   result["fusion_depth_um"] = 1e6 * zone.depth;
 }
@@ -53,14 +57,15 @@ double pool_isotherm(const TrackCase& t, const Mixture& mixture) {
   return t.pool_temperature > 0 ? t.pool_temperature : mixture.liquidus(0);
 }
 
-/// Whether any melt still lies on solid metal; a drop in flight has nothing to freeze to.
-bool melt_left(const Engine& engine) {
+/// Whether this rank has any.
+bool melt_left_here(const Engine& engine) {
   const Particles& p = engine.particles();
   const NeighbourList& list = engine.neighbours();
   const double touch = 2.25 * p.spacing * p.spacing;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const bool molten =
-        engine.model().flow ? p.phase[i] == Phase::liquid : p.liquid_fraction[i] >= 1;
+        p.home[i] == Home::here &&
+        (engine.model().flow ? p.phase[i] == Phase::liquid : p.liquid_fraction[i] >= 1);
     for (std::size_t k = list.first[i]; molten && k < list.last[i]; ++k) {
       const std::uint32_t j = list.index[k];
       if (j < p.size() && p.phase[j] == Phase::solid) {
@@ -75,6 +80,8 @@ bool melt_left(const Engine& engine) {
   return false;
 }
 
+bool melt_left(const Engine& engine) { return engine.ranks().any(melt_left_here(engine)); }
+
 Timings step_timings(const Engine& engine) {
   const StepTimes& w = engine.times();
   return {{"heat", w.heat},   {"species", w.species}, {"surface", w.surface},
@@ -82,14 +89,15 @@ Timings step_timings(const Engine& engine) {
 }
 
 nlohmann::json track_result(const TrackCase& t, const Discretisation& made, const Engine& engine,
-                            const RunProgress& run, const Acceptance& acceptance) {
+                            const RunProgress& run, const Particles& whole,
+                            const Acceptance& acceptance) {
   const double reference = pool_isotherm(t, engine.mixture());
   const HistoryLine final = measure(engine, reference, run.start_enthalpy);
   const EnergyLedger& ledger = engine.ledger();
   nlohmann::json result = {
       {"title", t.title},
       {"spacing_um", 1e6 * t.spacing},
-      {"particles", engine.particles().size()},
+      {"particles", whole.size()},
       {"additive_wt_percent", 100 * made.bed_additive_mass_fraction},
       {"additive_wt_percent_as_particles", 100 * made.additive_mass_fraction},
       {"powder_volume_relative_error", made.powder_volume_error},
@@ -113,7 +121,7 @@ nlohmann::json track_result(const TrackCase& t, const Discretisation& made, cons
       {"snapshots", run.snapshots}};
   result = window_json(run.lines, t, std::move(result));
   if (engine.model().flow) {
-    const LimiterCounts& acted = engine.flow().limiters();
+    const LimiterCounts acted = engine.limiters();
     result["limiters"] = {{"wall_pressure_clipped", acted.wall_pressure},
                           {"wall_particle_steps", acted.wall_steps},
                           {"curvature_held", acted.curvature},
@@ -122,13 +130,12 @@ nlohmann::json track_result(const TrackCase& t, const Discretisation& made, cons
   const double track = t.speed * t.exposure;
   result["steady_state"] = steadiness_json(run.lines, start_up_length(track) / t.speed, t.exposure);
   result["steady"] = result["steady_state"]["pool_length"]["sentence"];
-  add_fusion_zone(result, t, engine);
+  add_fusion_zone(result, t, engine.mixture(), whole);
   result["acceptance"] = acceptance.json();
   result["timings"] = timings_json(step_timings(engine));
   result["wall_time_s"] = run.wall_time;
-  result["particle_steps_per_second"] = static_cast<double>(engine.steps()) *
-                                        static_cast<double>(engine.particles().size()) /
-                                        run.wall_time;
+  result["particle_steps_per_second"] =
+      static_cast<double>(engine.steps()) * static_cast<double>(whole.size()) / run.wall_time;
   result["revision"] = code_revision();
   return result;
 }
