@@ -2,6 +2,7 @@
 #include "base/program.hpp"
 
 #include <exception>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -28,21 +29,28 @@ int Program::run(int argc, const char* const* argv, const std::function<ExitStat
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
-    const int status = app.exit(problem);
+    std::ostringstream nobody;
+    const int status = hushed_ ? app.exit(problem, nobody, nobody) : app.exit(problem);
     return status == 0 ? 0 : static_cast<int>(ExitStatus::bad_input);
   }
   // Log lines go to standard error, so that standard output stays the result.
   auto log = spdlog::stderr_color_mt(name_);
   log->set_pattern("%n: %v");
   spdlog::set_default_logger(log);
-  spdlog::set_level(quiet_ ? spdlog::level::warn : spdlog::level::info);
+  spdlog::set_level(hushed_  ? spdlog::level::err
+                    : quiet_ ? spdlog::level::warn
+                             : spdlog::level::info);
   try {
     return static_cast<int>(body());
   } catch (const InputError& problem) {
-    fmt::print(stderr, "{}: error: {}\n", name_, problem.what());
+    if (!hushed_) {
+      fmt::print(stderr, "{}: error: {}\n", name_, problem.what());
+    }
     return static_cast<int>(ExitStatus::bad_input);
   } catch (const Stopped& request) {
-    fmt::print(stderr, "{}: stopped: {}\n", name_, request.what());
+    if (!hushed_) {
+      fmt::print(stderr, "{}: stopped: {}\n", name_, request.what());
+    }
     return static_cast<int>(ExitStatus::stopped);
   } catch (const std::exception& problem) {
     fmt::print(stderr, "{}: failed: {}\n", name_, problem.what());

@@ -24,10 +24,12 @@ class Program {
   /// Parses the command line and calls `body`, whose result is the exit status.
   int run(int argc, const char* const* argv, const std::function<ExitStatus()>& body);
   bool quiet() const { return quiet_; }
+  /// One of several processes of which another speaks: says nothing but what failed only here.
+  void hush() { hushed_ = true; }
 
  private:
   std::string name_;
-  bool quiet_ = false;
+  bool quiet_ = false, hushed_ = false;
 };
 
 /// Options of a program that takes a TOML input: the file, `--set key=value`, `--validate`,
@@ -40,6 +42,8 @@ struct InputOptions {
   /// Answers --schema and --reference, reads the input, answers --validate. Returns true when the
   /// program has nothing more to do. @throws InputError as Input::read, or if no file was named.
   bool handle(Input& input) const;
+  /// Whether handle() will only print something.
+  bool only_asks() const { return validate || schema || reference; }
 };
 
 }  // namespace meltproof

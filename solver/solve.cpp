@@ -8,13 +8,22 @@
 
 int main(int argc, char** argv) {
   using namespace meltproof;
+  const solver::MpiSession session;
+  const solver::Ranks ranks = solver::Ranks::world();
   Program program(
       "meltproof-solve",
       "Simulates a single laser track: heat, melting and alloy diffusion in three dimensions.\n"
       "Example: meltproof-solve solver/cases/track_1wt.toml --powder powder.h5 --output run/\n"
       "Long runs keep checkpoints; SIGTERM and Ctrl-C write one. The same command with --restart "
       "goes\n"
-      "on from the newest, and ends in the same numbers as a run that was never stopped.");
+      "on from the newest, and ends in the same numbers as a run that was never stopped.\n"
+      "Several processes share a run: mpirun -n 4 meltproof-solve ... --threads 1, where "
+      "processes\n"
+      "times threads should not exceed the cores. Whatever their number, the numbers are the "
+      "same.");
+  if (!ranks.root()) {
+    program.hush();
+  }
   InputOptions options;
   options.add_to(program.app, "the track");
   std::string powder, output;
@@ -36,11 +45,14 @@ int main(int argc, char** argv) {
   program.app.add_flag("--restart", how.restart,
                        "go on from the newest good checkpoint in the output folder; without one, "
                        "begin");
-  return program.run(argc, argv, [&] {
+  const int status = program.run(argc, argv, [&] {
     solver::TrackCase track;
     Input input = solver::declare(track);
     if (!powder.empty()) {
       options.overrides.push_back("powder.bed=" + powder);
+    }
+    if (!ranks.root() && options.only_asks()) {
+      return ExitStatus::success;
     }
     if (options.handle(input)) {
       return ExitStatus::success;
@@ -58,10 +70,11 @@ int main(int argc, char** argv) {
     }
     how.name = std::filesystem::path(options.path).stem().string();
     how.folder = output;
-    how.quiet = program.quiet();
+    how.quiet = program.quiet() || !ranks.root();
+    how.ranks = ranks;
     how.checkpoint_interval = 60 * minutes;
     const auto result = solver::run_track(track, how, provenance);
-    if (!program.quiet()) {
+    if (!how.quiet) {
       fmt::print(
           "{}: pool length {:.1f} um, width {:.1f} um, depth {:.1f} um ({}); any liquid {:.1f} um; "
           "energy closes to "
@@ -75,4 +88,8 @@ int main(int argc, char** argv) {
     }
     return ExitStatus::success;
   });
+  if (status != 0 && status != static_cast<int>(ExitStatus::stopped)) {
+    session.give_up(status);
+  }
+  return status;
 }

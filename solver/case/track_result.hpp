@@ -13,7 +13,8 @@ namespace meltproof::solver {
 /// The isotherm that outlines the melt pool, K: the case's, or the liquidus of the base material.
 double pool_isotherm(const TrackCase& track, const Mixture& mixture);
 
-/// Whether any melt still lies on solid metal; a drop in flight has nothing to freeze to.
+/// Whether any melt still lies on solid metal, on whatever rank (collective); a drop in flight has
+/// nothing to freeze to.
 bool melt_left(const Engine& engine);
 
 /// Where the parts of a run's time went, s.
@@ -21,9 +22,10 @@ Timings step_timings(const Engine& engine);
 
 /// What a complete run has found: sizes as means over the window at the end of the exposure,
 /// balances, steadiness, limiters, acceptance. Units are in the keys.
-/// @param run with all lines of its history.
+/// Collective; what the root returns counts. @param run with all lines of its history; @param whole
+/// the particles of all ranks.
 nlohmann::json track_result(const TrackCase& track, const Discretisation& made,
-                            const Engine& engine, const RunProgress& run,
+                            const Engine& engine, const RunProgress& run, const Particles& whole,
                             const Acceptance& acceptance);
 
 }  // namespace meltproof::solver

@@ -2,6 +2,7 @@
 #include "solver/case/track_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -18,6 +19,7 @@
 #include "solver/output/paraview.hpp"
 #include "solver/output/run_summary.hpp"
 #include "solver/output/snapshot.hpp"
+#include "solver/output/whole.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -63,6 +65,7 @@ class TrackRun {
   TrackRun(const TrackCase& track, const RunOptions& options, Provenance provenance)
       : t_(track),
         options_(options),
+        ranks_(options.ranks),
         provenance_(std::move(provenance)),
         mixture_(read_mixture(track)),
         made_(discretise(track, mixture_)),
@@ -75,11 +78,17 @@ class TrackRun {
 
   nlohmann::json carry_out() {
     start();
-    remove_leftovers();
-    ArtifactWriter writer(options_.folder / "run.h5", "meltproof run");
-    write_facts(writer, t_, *engine_, made_);
+    std::optional<ArtifactWriter> file;
+    if (ranks_.root()) {
+      remove_leftovers();
+      file.emplace(options_.folder / "run.h5", "meltproof run");
+      write_facts(*file, t_, *engine_, made_);
+    }
+    ArtifactWriter* const writer = file ? &*file : nullptr;
     if (restarted_) {
-      checkpoints_.restore_snapshots(writer, run_.snapshots);
+      if (writer != nullptr) {
+        checkpoints_.restore_snapshots(*writer, run_.snapshots);
+      }
     } else {
       run_.lines = {measure(*engine_, reference_, run_.start_enthalpy)};
       run_.history = 1;
@@ -106,6 +115,11 @@ class TrackRun {
     }
   }
 
+  std::size_t particle_count() const {
+    const auto& home = engine_->particles().home;
+    return ranks_.add(static_cast<std::uint64_t>(std::count(home.begin(), home.end(), Home::here)));
+  }
+
   double end() const { return t_.exposure + t_.cooling_limit; }
 
   double seconds() const {
@@ -122,7 +136,7 @@ class TrackRun {
     if (options_.restart) {
       if (auto found = checkpoints_.newest(provenance_)) {
         run_ = std::move(found->run);
-        engine_.emplace(std::move(found->engine), mixture_, diffusivity, model);
+        engine_.emplace(std::move(found->engine), mixture_, diffusivity, model, ranks_);
         restarted_ = true;
         earlier_ = run_.wall_time;
         spdlog::info("{}: goes on from {}, {:.1f} of {:.1f} us", options_.name,
@@ -133,8 +147,10 @@ class TrackRun {
       }
     }
     if (!restarted_) {
-      checkpoints_.clear();
-      engine_.emplace(std::move(made_.particles), mixture_, diffusivity, model);
+      if (ranks_.root()) {
+        checkpoints_.clear();
+      }
+      engine_.emplace(std::move(made_.particles), mixture_, diffusivity, model, ranks_);
       run_.start_enthalpy = engine_->total_enthalpy();
       run_.start_additive = engine_->total_additive_mass();
     }
@@ -143,14 +159,14 @@ class TrackRun {
     spdlog::info(
         "{}: {} particles, spacing {:.3g} um, {:.1f} neighbours each, domain {:.0f} x {:.0f} x "
         "{:.0f} um",
-        options_.name, engine_->particles().size(), 1e6 * t_.spacing,
-        engine_->neighbours().mean_neighbours(), 1e6 * (box.upper[0] - box.lower[0]),
-        1e6 * (box.upper[1] - box.lower[1]), 1e6 * (box.upper[2] - box.lower[2]));
+        options_.name, particle_count(), 1e6 * t_.spacing, engine_->neighbours().mean_neighbours(),
+        1e6 * (box.upper[0] - box.lower[0]), 1e6 * (box.upper[1] - box.lower[1]),
+        1e6 * (box.upper[2] - box.lower[2]));
   }
 
   /// To the next line of the history, snapshot, or the moment at which the beam goes off.
   /// @returns whether there is anything left to happen.
-  bool advance(ArtifactWriter& writer, const StopRequest& stop, Progress& progress) {
+  bool advance(ArtifactWriter* writer, const StopRequest& stop, Progress& progress) {
     const double next_line = static_cast<double>(run_.history) * t_.history_interval;
     const double next_frame = static_cast<double>(run_.snapshots) / t_.frame_rate;
     double until = std::min({next_line, end(), next_frame < t_.exposure ? next_frame : end()});
@@ -214,33 +230,43 @@ class TrackRun {
     }
     if (engine_->time() == t_.exposure) {
       // At the end all is solid: how the melt fared is measured as the beam goes off.
-      const Acceptance melt = measure_acceptance(engine_->particles(), judged_);
-      run_.melt = melt.liquid;
-      run_.melt_volume = melt.liquid_volume;
+      const Whole whole(*engine_);
+      if (ranks_.root()) {
+        const Acceptance melt = measure_acceptance(whole.particles(), judged_);
+        run_.melt = melt.liquid;
+        run_.melt_volume = melt.liquid_volume;
+      }
     }
     return engine_->time() <= t_.exposure || melt_left(*engine_) ||
-           (!engine_->model().flow && (now.pool.found || now.any_liquid.found));
+           (!engine_->model().flow && ranks_.any(now.pool.found || now.any_liquid.found));
   }
 
-  void save_if_due(const ArtifactWriter& writer, const StopRequest& stop) {
+  void save_if_due(const ArtifactWriter* writer, const StopRequest& stop) {
     const auto now = std::chrono::steady_clock::now();
     const double since = std::chrono::duration<double>(now - written_).count();
     const bool due =
         (options_.checkpoint_interval > 0 && since >= options_.checkpoint_interval) ||
         (options_.checkpoint_steps > 0 && engine_->steps() % options_.checkpoint_steps == 0);
-    if (!due && !stop.made()) {
+    // Clocks and signals differ between ranks: what one of them thinks, all do.
+    std::array<double, 2> wishes{due ? 1.0 : 0.0, stop.made() ? 1.0 : 0.0};
+    ranks_.largest(wishes);
+    const bool stopping = wishes[1] > 0;
+    if (wishes[0] == 0 && !stopping) {
       return;
     }
     if (engine_->gas() != nullptr) {
-      if (stop.made()) {
+      if (stopping) {
         throw Stopped("a run with surroundings = \"gas\" keeps no checkpoints: it begins anew");
       }
       return;
     }
     run_.wall_time = seconds();
     std::filesystem::path place;
+    const EngineState state = engine_->state();
     try {
-      place = checkpoints_.write(engine_->state(), run_, writer, provenance_);
+      if (writer != nullptr) {
+        place = checkpoints_.write(state, run_, *writer, provenance_);
+      }
     } catch (const std::runtime_error& problem) {
       throw std::runtime_error(
           fmt::format("{}; {}; make room and use --restart", problem.what(),
@@ -249,7 +275,7 @@ class TrackRun {
                           : "the one before it stands, " + checkpoints_.last().string()));
     }
     written_ = std::chrono::steady_clock::now();
-    if (stop.made()) {
+    if (stopping) {
       throw Stopped(
           fmt::format("at {:.1f} of {:.1f} us, with a checkpoint in {}; the same command with "
                       "--restart goes on "
@@ -258,19 +284,26 @@ class TrackRun {
     }
   }
 
-  nlohmann::json finish(ArtifactWriter& writer) {
+  nlohmann::json finish(ArtifactWriter* writer) {
     spdlog::info("{} thermal and {} flow steps, {} list builds", engine_->steps(),
                  engine_->flow_steps(), engine_->list_builds());
     // The last snapshot is the solidified track.
     write_snapshot(writer, run_.snapshots++, *engine_);
-    Acceptance acceptance = measure_acceptance(engine_->particles(), judged_);
+    const Whole whole(*engine_);
+    Acceptance acceptance;
+    if (ranks_.root()) {
+      acceptance = measure_acceptance(whole.particles(), judged_);
+    }
     acceptance.liquid = run_.melt;
     acceptance.liquid_volume = run_.melt_volume;
     provenance_.wall_time = run_.wall_time = seconds();
-    nlohmann::json result = track_result(t_, made_, *engine_, run_, acceptance);
+    nlohmann::json result = track_result(t_, made_, *engine_, run_, whole.particles(), acceptance);
+    if (writer == nullptr) {
+      return result;
+    }
     result["case"] = options_.name;
     result["provenance"] = provenance_.json();
-    writer.commit(provenance_);
+    writer->commit(provenance_);
     write_xdmf(options_.folder / "run.h5");
     write_file(options_.folder / "history.csv", history_csv(run_.lines));
     write_file(options_.folder / "input.toml", provenance_.resolved_input);
@@ -284,6 +317,7 @@ class TrackRun {
 
   const TrackCase& t_;
   const RunOptions& options_;
+  Ranks ranks_;
   Provenance provenance_;
   Mixture mixture_;
   Discretisation made_;

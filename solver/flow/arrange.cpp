@@ -8,24 +8,29 @@
 
 namespace meltproof::solver {
 
-void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              const NeighbourList& list, bool everything) {
-  const std::size_t n = particles.size(), all = list.void_index + std::size_t{1};
-  // Whoever had a role before may have lost it; the records of all others still hold.
-  std::vector<std::uint32_t> changed;
-  if (everything || role_.size() != n) {
-    changed.resize(n);
-    std::iota(changed.begin(), changed.end(), 0U);
-  } else {
-    changed = liquid_;
-    changed.insert(changed.end(), wall_.begin(), wall_.end());
+void FreeSurfaceFlow::fit(std::size_t n) {
+  for (auto* field : {&filled_, &area_, &exposed_, &pull_, &curvature_, &pressure_}) {
+    field->resize(n, 0.0);
   }
+  for (auto* field :
+       {&colour_, &normal_, &missing_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
+    field->resize(n, Vector{});
+  }
+  density_gradient_.resize(std::max(n, density_gradient_.size()));
+}
+
+/// Who is melt and who is its wall. A wall knows it from the melt's lists, those of other ranks
+/// included: who finds that its melt touches a copy tells the owner, who tells everybody.
+void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<Ghost>& ghosts,
+                                 const NeighbourList& list) {
+  const std::size_t n = particles.size();
   role_.assign(n, 0);
-  liquid_.clear();
-  wall_.clear();
+  for (auto* members : {&liquid_, &wall_, &liquid_copies_, &wall_copies_}) {
+    members->clear();
+  }
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (particles.phase[i] == Phase::liquid) {
-      liquid_.push_back(i);
+    if (particles.phase[i] == Phase::liquid && particles.home[i] != Home::nowhere) {
+      (particles.home[i] == Home::here ? liquid_ : liquid_copies_).push_back(i);
       role_[i] = 1;
     }
   }
@@ -38,10 +43,49 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
       const std::uint32_t source = j < n ? j : ghosts[j - n].source;
       if (role_[source] == 0 && particles.phase[source] == Phase::solid) {
         role_[source] = 2;
-        wall_.push_back(source);
+        if (particles.home[source] == Home::here) {
+          wall_.push_back(source);
+        }
       }
     }
   }
+  if (!halo_.empty()) {
+    halo_.give_back(
+        Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = role_[i] == 2 ? 1 : 0; },
+        [&](std::uint32_t i, const double* in) {
+          if (*in > 0 && role_[i] == 0) {
+            role_[i] = 2;
+            wall_.push_back(i);
+          }
+        });
+    halo_.exchange(
+        Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = role_[i]; },
+        [&](std::uint32_t i, const double* in) {
+          role_[i] = static_cast<std::uint8_t>(*in);
+          if (role_[i] == 2) {
+            wall_copies_.push_back(i);
+          }
+        });
+    halo_.set_roles(role_);
+  }
+}
+
+void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
+                              const NeighbourList& list, bool everything,
+                              const std::vector<std::uint32_t>& came_or_went) {
+  const std::size_t n = particles.size(), all = list.void_index + std::size_t{1};
+  // Whoever had a role before may have lost it; the records of all others still hold.
+  std::vector<std::uint32_t> changed;
+  if (everything || role_.size() != n) {
+    changed.resize(n);
+    std::iota(changed.begin(), changed.end(), 0U);
+  } else {
+    changed = came_or_went;
+    for (const auto* members : near_melt()) {
+      changed.insert(changed.end(), members->begin(), members->end());
+    }
+  }
+  find_roles(particles, ghosts, list);
   std::sort(wall_.begin(), wall_.end());
   // A wall listens to the melt only, which is a small part of its list.
   melt_near_wall_.first.clear();
@@ -67,20 +111,13 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
       near_ghosts_.push_back(g);
     }
   }
-  for (auto* field : {&filled_, &area_, &exposed_, &pull_, &curvature_, &pressure_}) {
-    field->resize(n, 0.0);
-  }
-  for (auto* field :
-       {&colour_, &normal_, &missing_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
-    field->resize(n, Vector{});
-  }
+  fit(n);
   limited_.assign(n, 0);
   disorder_.assign(n, 0);
   // Solids stand still, so their records are written here and not again. Behind everybody stands
   // the void.
-  for (const std::uint32_t i : wall_) {
-    changed.push_back(i);
-  }
+  changed.insert(changed.end(), wall_.begin(), wall_.end());
+  changed.insert(changed.end(), wall_copies_.begin(), wall_copies_.end());
   motion_.resize(all);
   density_gradient_.resize(all);
   surface_.resize(all);
@@ -90,7 +127,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
   for (const std::uint32_t i : changed) {
     const Vector& at = particles.position[i];
     // What was lost takes part in nothing.
-    const bool here = particles.phase[i] != Phase::lost;
+    const bool here = particles.phase[i] != Phase::lost && particles.home[i] != Home::nowhere;
     motion_[i] =
         here ? MotionRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0} : MotionRecord{};
     surface_[i] = here ? SurfaceRecord{at[0], at[1], at[2], 0, 0, 0, 0, 0} : SurfaceRecord{};
@@ -133,8 +170,7 @@ void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghos
 }
 
 void FreeSurfaceFlow::write_motion(const Particles& particles, const std::vector<Ghost>& ghosts) {
-  for_each_particle(liquid_.size(), [&](std::size_t k) {
-    const std::uint32_t i = liquid_[k];
+  const auto write = [&](std::uint32_t i) {
     const Vector &at = particles.position[i], &v = particles.velocity[i];
     motion_[i] = {at[0],
                   at[1],
@@ -144,7 +180,9 @@ void FreeSurfaceFlow::write_motion(const Particles& particles, const std::vector
                   v[2],
                   particles.mass[i] / particles.density[i],
                   particles.density[i]};
-  });
+  };
+  for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
+  for_each_particle(liquid_copies_.size(), [&](std::size_t k) { write(liquid_copies_[k]); });
   const std::size_t n = particles.size();
   for (const std::uint32_t g : near_ghosts_) {
     const std::uint32_t source = ghosts[g].source;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Continuity, density diffusion and the colour gradient.
+#include <algorithm>
 #include <cmath>
 
 #include "solver/flow/free_surface.hpp"
@@ -50,6 +51,17 @@ void FreeSurfaceFlow::density_gradients(const Particles& particles,
     const Vector gradient = surface_gradient(sums.total(), {});
     density_gradient_[i] = {gradient[0], gradient[1], gradient[2]};
   });
+  halo_.exchange(
+      Halo::liquid, 3,
+      [&](std::uint32_t i, double* out) {
+        const DensityRecord& gradient = density_gradient_[i];
+        out[0] = gradient.x;
+        out[1] = gradient.y;
+        out[2] = gradient.z;
+      },
+      [&](std::uint32_t i, const double* in) {
+        density_gradient_[i] = {in[0], in[1], in[2]};
+      });
   const std::size_t n = particles.size();
   for (const std::uint32_t g : near_ghosts_) {
     const DensityRecord& source = density_gradient_[ghosts[g].source];
@@ -116,6 +128,16 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
     }
     particles.density[i] += dt * rate;
   });
+  halo_.exchange(
+      Halo::liquid, 4,
+      [&](std::uint32_t i, double* out) {
+        out[0] = particles.density[i];
+        std::copy_n(colour_[i].begin(), 3, out + 1);
+      },
+      [&](std::uint32_t i, const double* in) {
+        particles.density[i] = in[0];
+        std::copy_n(in + 1, 3, colour_[i].begin());
+      });
 }
 
 }  // namespace meltproof::solver

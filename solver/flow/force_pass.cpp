@@ -41,6 +41,22 @@ void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
     record.vy = wall_velocity(0, sum.velocity_y, sum.weight);
     record.vz = wall_velocity(0, sum.velocity_z, sum.weight);
   });
+  halo_.exchange(
+      Halo::wall, 4,
+      [&](std::uint32_t i, double* out) {
+        const ForceRecord& record = force_[i];
+        out[0] = record.pressure;
+        out[1] = record.vx;
+        out[2] = record.vy;
+        out[3] = record.vz;
+      },
+      [&](std::uint32_t i, const double* in) {
+        ForceRecord& record = force_[i];
+        record.pressure = in[0];
+        record.vx = in[1];
+        record.vy = in[2];
+        record.vz = in[3];
+      });
   for (const std::uint32_t g : near_ghosts_) {
     if (role_[ghosts[g].source] == 2) {
       const ForceRecord& source = force_[ghosts[g].source];

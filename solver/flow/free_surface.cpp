@@ -11,11 +11,12 @@
 namespace meltproof::solver {
 
 FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpline& kernel,
-                                 double spacing, int dimensions)
+                                 double spacing, int dimensions, Halo& halo)
     : settings_(settings),
       kernel_(kernel),
       spacing_(spacing),
       dimensions_(dimensions),
+      halo_(halo),
       depth_(dimensions),
       outermost_depth_(depth_(outermost_threshold)) {
   const auto reach = static_cast<int>(std::ceil(kernel.support() / spacing));
@@ -41,14 +42,48 @@ void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
   });
 }
 
+void FreeSurfaceFlow::follow(Particles& particles) {
+  halo_.exchange(
+      Halo::liquid, 6,
+      [&](std::uint32_t i, double* out) {
+        std::copy_n(particles.position[i].begin(), 3, out);
+        std::copy_n(particles.velocity[i].begin(), 3, out + 3);
+      },
+      [&](std::uint32_t i, const double* in) {
+        std::copy_n(in, 3, particles.position[i].begin());
+        std::copy_n(in + 3, 3, particles.velocity[i].begin());
+      });
+}
+
+FlowParticle FreeSurfaceFlow::particle(std::uint32_t i) const {
+  const DensityRecord& gradient = density_gradient_[i];
+  return {colour_[i],
+          {gradient.x, gradient.y, gradient.z},
+          tension_gradient_[i],
+          acceleration_[i],
+          shift_[i],
+          exposed_[i],
+          pressure_[i]};
+}
+
+void FreeSurfaceFlow::set_particle(std::uint32_t i, const FlowParticle& what) {
+  colour_[i] = what.colour;
+  const Vector& gradient = what.density_gradient;
+  density_gradient_[i] = {gradient[0], gradient[1], gradient[2]};
+  tension_gradient_[i] = what.tension_gradient;
+  acceleration_[i] = what.acceleration;
+  shift_[i] = what.shift;
+  exposed_[i] = what.exposed;
+  pressure_[i] = what.pressure;
+}
+
 void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
                                const NeighbourList& list, const MeltProperties& properties) {
   write_surface(particles, ghosts, list, properties);
   curvatures(ghosts, list);
   const std::size_t n = particles.size();
   const double stiffness = settings_.sound_speed * settings_.sound_speed;
-  for_each_particle(liquid_.size(), [&](std::size_t k) {
-    const std::uint32_t i = liquid_[k];
+  const auto write = [&](std::uint32_t i) {
     const double density = particles.density[i];
     const double reference = particles.mass[i] / particles.volume[i];
     pressure_[i] = state_pressure(density, reference, stiffness * reference, 0);
@@ -63,7 +98,9 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
                  pressure_[i],
                  density,
                  properties.viscosity[i]};
-  });
+  };
+  for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
+  for_each_particle(liquid_copies_.size(), [&](std::size_t k) { write(liquid_copies_[k]); });
   for (const std::uint32_t g : near_ghosts_) {
     const std::uint32_t source = ghosts[g].source;
     if (role_[source] == 1) {

@@ -2,9 +2,11 @@
 // Weakly compressible flow of the melt with a free surface: what is not metal has no particles.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "solver/parallel/halo.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/neighbours.hpp"
@@ -70,6 +72,12 @@ struct FlowMemory {
   std::vector<double> pressure;      ///< Pa
 };
 
+/// What a particle takes along within the flow when another rank comes to own or to copy it.
+struct FlowParticle {
+  Vector colour{}, density_gradient{}, tension_gradient{}, acceleration{}, shift{};
+  double exposed = 0, pressure = 0;
+};
+
 /// Counts of everything that limited a value, since the start of a run.
 struct LimiterCounts {
   std::uint64_t wall_pressure = 0;  ///< wall pressures clipped at zero, particle steps
@@ -81,16 +89,20 @@ struct LimiterCounts {
 /// **One step of the flow**, velocity Verlet: half a kick and the drift; then the density at
 /// (x^{n+1}, v^{n+1/2}), because taken from the step before it a drop breathes forty times its own
 /// pressure; then walls, interface and forces; then the other half kick. Sums are gathered over
-/// lists whose order belongs to the particle.
+/// lists whose order belongs to the particle. Each rank computes its own particles; what their
+/// neighbours' sums need of them goes to the copies between two passes.
 class FreeSurfaceFlow {
  public:
+  /// @param halo brings values to copies on other ranks; outlives the flow.
   FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpline& kernel, double spacing,
-                  int dimensions);
+                  int dimensions, Halo& halo);
 
   /// To be called when phases, indices or lists have changed: finds liquid and wall particles.
   /// @param everything indices or positions of solids have changed too, so all records are written.
+  /// @param changed particles that came from other ranks, or went there, since the last call.
   void arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-               const NeighbourList& list, bool everything);
+               const NeighbourList& list, bool everything,
+               const std::vector<std::uint32_t>& changed = {});
   /// To be called when the properties have changed: gradients of the surface tension.
   void set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
                       const NeighbourList& list, const MeltProperties& properties);
@@ -106,7 +118,15 @@ class FreeSurfaceFlow {
   void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
                 const NeighbourList& list, const MeltProperties& properties);
 
-  /// For a run that is stopped and continued.
+  /// Brings places and velocities of the liquid to its copies.
+  void follow(Particles& particles);
+
+  /// For a particle that goes to another rank, and one that comes from there: to be called before
+  /// arrange(), with an index that was there at the last call.
+  FlowParticle particle(std::uint32_t i) const;
+  void set_particle(std::uint32_t i, const FlowParticle& what);
+
+  /// For a run that is stopped and continued; of the particles of this rank.
   FlowMemory memory() const;
   /// Takes it back, once arrange() has found the same liquid particles.
   void remember(const FlowMemory& memory, const LimiterCounts& limiters);
@@ -120,6 +140,13 @@ class FreeSurfaceFlow {
   const std::vector<Vector>& acceleration() const { return acceleration_; }  ///< m s-2
   const std::vector<std::uint32_t>& liquid() const { return liquid_; }
   const std::vector<std::uint32_t>& wall() const { return wall_; }
+  /// All of both, copies of other ranks' included.
+  std::array<const std::vector<std::uint32_t>*, 4> near_melt() const {
+    return {&liquid_, &wall_, &liquid_copies_, &wall_copies_};
+  }
+  bool arranged() const { return !role_.empty(); }
+  /// Room for so many particles.
+  void fit(std::size_t n);
   const LimiterCounts& limiters() const { return limiters_; }
   const FlowSettings& settings() const { return settings_; }
 
@@ -156,6 +183,8 @@ class FreeSurfaceFlow {
     double viscosity = 0;  // Pa s
   };
 
+  void find_roles(const Particles& particles, const std::vector<Ghost>& ghosts,
+                  const NeighbourList& list);
   void write_motion(const Particles& particles, const std::vector<Ghost>& ghosts);
   void colour_gradients(const NeighbourList& list, const std::vector<std::uint32_t>& members);
   void density_gradients(const Particles& particles, const std::vector<Ghost>& ghosts,
@@ -164,6 +193,8 @@ class FreeSurfaceFlow {
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
                      const NeighbourList& list, const MeltProperties& properties);
   void leave_disorder_out(const NeighbourList& list);
+  template <class Visit>
+  void for_each_near_melt(const Visit& visit) const;
   void curvatures(const std::vector<Ghost>& ghosts, const NeighbourList& list);
   void curvatures_below(const NeighbourList& list);
   void missing_gradients(const NeighbourList& list);
@@ -175,10 +206,12 @@ class FreeSurfaceFlow {
   QuinticSpline kernel_;
   double spacing_;
   int dimensions_;
-  std::vector<std::uint32_t> liquid_, wall_;
-  std::vector<std::uint32_t> near_ghosts_;  // ghosts of liquid and wall particles
-  std::vector<std::uint8_t> role_;          // 0 neither, 1 liquid, 2 wall
-  NeighbourList melt_near_wall_;            // of wall_[k], k in place of the particle: liquid only
+  Halo& halo_;
+  std::vector<std::uint32_t> liquid_, wall_;                // of this rank
+  std::vector<std::uint32_t> liquid_copies_, wall_copies_;  // of others'
+  std::vector<std::uint32_t> near_ghosts_;                  // ghosts of liquid and wall particles
+  std::vector<std::uint8_t> role_;                          // 0 neither, 1 liquid, 2 wall
+  NeighbourList melt_near_wall_;  // of wall_[k], k in place of the particle: liquid only
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;

@@ -9,6 +9,14 @@
 
 namespace meltproof::solver {
 
+/// Melt and walls, copies included.
+template <class Visit>
+void FreeSurfaceFlow::for_each_near_melt(const Visit& visit) const {
+  for (const auto* members : near_melt()) {
+    for_each_particle(members->size(), [&](std::size_t k) { visit((*members)[k]); });
+  }
+}
+
 void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
                                     const NeighbourList& list, const MeltProperties& properties) {
   const auto write = [&](std::uint32_t i) {
@@ -27,8 +35,7 @@ void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vecto
       record.depth = depth_(strength) * kernel_.smoothing_length;
     }
   };
-  for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
-  for_each_particle(wall_.size(), [&](std::size_t k) { write(wall_[k]); });
+  for_each_near_melt(write);
   const std::size_t n = particles.size();
   const auto write_images = [&] {
     for (const std::uint32_t g : near_ghosts_) {
@@ -69,14 +76,16 @@ void FreeSurfaceFlow::leave_disorder_out(const NeighbourList& list) {
   };
   for_each_particle(liquid_.size(), [&](std::size_t k) { look(liquid_[k]); });
   for_each_particle(wall_.size(), [&](std::size_t k) { look(wall_[k]); });
+  halo_.exchange(
+      Halo::metal_near_melt, 1, [&](std::uint32_t i, double* out) { *out = disorder_[i]; },
+      [&](std::uint32_t i, const double* in) { disorder_[i] = *in > 0 ? 1 : 0; });
   const auto leave_out = [&](std::uint32_t i) {
     if (disorder_[i] != 0) {
       surface_[i].depth = surface_[i].nx = surface_[i].ny = surface_[i].nz = 0;
       normal_[i] = {};
     }
   };
-  for_each_particle(liquid_.size(), [&](std::size_t k) { leave_out(liquid_[k]); });
-  for_each_particle(wall_.size(), [&](std::size_t k) { leave_out(wall_[k]); });
+  for_each_near_melt(leave_out);
 }
 
 void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
@@ -86,6 +95,10 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   // next one.
   colour_gradients(list, wall_);
   colour_gradients(list, liquid_);
+  halo_.exchange(
+      Halo::metal_near_melt, 3,
+      [&](std::uint32_t i, double* out) { std::copy_n(colour_[i].begin(), 3, out); },
+      [&](std::uint32_t i, const double* in) { std::copy_n(in, 3, colour_[i].begin()); });
   if (settings_.density_diffusion > 0 && settings_.diffusion_form == DensityDiffusion::corrected) {
     density_gradients(particles, ghosts, list);
   }
@@ -156,6 +169,15 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
       outer_curvature_[i] = {pull_[i] * curvature_[i], pull_[i]};
     }
   });
+  halo_.exchange(
+      Halo::liquid, 2,
+      [&](std::uint32_t i, double* out) {
+        out[0] = outer_curvature_[i].curvature;
+        out[1] = outer_curvature_[i].weight;
+      },
+      [&](std::uint32_t i, const double* in) {
+        outer_curvature_[i] = {in[0], in[1]};
+      });
   for (const std::uint32_t g : near_ghosts_) {
     outer_curvature_[role_.size() + g] = outer_curvature_[ghosts[g].source];
   }

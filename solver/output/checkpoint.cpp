@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -158,6 +159,11 @@ Checkpoint read(const ArtifactReader& reader) {
       std::memcpy(values.data(), found.data(), values.size() * sizeof(T));
     }
   });
+  // The file is in the engine's order, and holds everybody.
+  Particles& p = checkpoint.engine.particles;
+  p.order.resize(p.size());
+  std::iota(p.order.begin(), p.order.end(), 0U);
+  p.home.assign(p.size(), Home::here);
   return checkpoint;
 }
 

@@ -2,13 +2,16 @@
 #include "solver/output/history.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "solver/output/acceptance.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/exact_sum.hpp"
 
 namespace meltproof::solver {
 
@@ -16,51 +19,91 @@ namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::infinity();
 
-/// Speed, volume, clumping and losses of the melt.
-void measure_melt(HistoryLine& line, const Particles& p, bool flow) {
+/// Sums and extremes over the melt of all ranks, and over everything.
+void measure_melt(HistoryLine& line, const Engine& engine) {
+  const Particles& p = engine.particles();
+  const Ranks& ranks = engine.ranks();
+  const bool flow = engine.model().flow.has_value();
+  const auto here = [&](std::size_t i) { return p.home[i] == Home::here; };
   const auto molten = [&](std::size_t i) {
-    return flow ? p.phase[i] == Phase::liquid : p.liquid_fraction[i] >= 1;
+    return here(i) && (flow ? p.phase[i] == Phase::liquid : p.liquid_fraction[i] >= 1);
   };
   const auto speed = [&](std::size_t i) {
     return std::hypot(p.velocity[i][0], p.velocity[i][1], p.velocity[i][2]);
   };
-  const double count = block_sum(p.size(), [&](std::size_t i) { return molten(i) ? 1.0 : 0.0; });
-  const double sum = block_sum(p.size(), [&](std::size_t i) { return molten(i) ? speed(i) : 0.0; });
-  line.mean_speed = count > 0 ? sum / count : 0;
-  line.largest_speed =
-      block_max(p.size(), 0, [&](std::size_t i) { return molten(i) ? speed(i) : 0.0; });
-  line.liquid_volume =
-      block_sum(p.size(), [&](std::size_t i) { return molten(i) ? p.volume[i] : 0.0; });
-  line.lost_particles =
-      static_cast<std::size_t>(std::count(p.phase.begin(), p.phase.end(), Phase::lost));
-  line.clumped = flow ? clumped_fraction(p) : 0;
+  std::array<std::uint64_t, 2> count{};  // molten, lost
+  std::array<double, 2> extreme{};       // speed, temperature
+  ExactSum speeds, volume;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (molten(i)) {
+      ++count[0];
+      speeds.add(speed(i));
+      volume.add(p.volume[i]);
+      extreme[0] = std::max(extreme[0], speed(i));
+    }
+    // What has left the domain keeps its temperature for ever.
+    if (here(i) && p.phase[i] == Phase::lost) {
+      ++count[1];
+    } else if (here(i)) {
+      extreme[1] = std::max(extreme[1], p.temperature[i]);
+    }
+  }
+  ranks.add(count);
+  ranks.largest(extreme);
+  ranks.add(speeds);
+  ranks.add(volume);
+  line.mean_speed = count[0] > 0 ? speeds.total() / static_cast<double>(count[0]) : 0;
+  line.liquid_volume = volume.total();
+  line.lost_particles = count[1];
+  line.largest_speed = extreme[0];
+  line.peak_temperature = extreme[1];
+}
+
+/// The pool by both definitions, and clumping of the melt. On the root; elsewhere only its part.
+void measure_pool(HistoryLine& line, const Engine& engine, double reference_temperature) {
+  const Particles& local = engine.particles();
+  const auto levels = [&](const Particles& p, std::size_t i) {
+    return std::pair{p.temperature[i] - reference_temperature,
+                     p.temperature[i] - engine.mixture().liquidus(p.concentration[i])};
+  };
+  // The pool is a small part of everything: only that, and what touches it, goes to the root.
+  std::vector<std::uint8_t> warm(local.size(), 0);
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    if (local.home[i] != Home::nowhere) {
+      const auto [pool, liquid] = levels(local, i);
+      warm[i] = pool >= 0 || liquid >= 0 || local.phase[i] == Phase::liquid ? 1 : 0;
+    }
+  }
+  const Particles p = engine.collect(warm, touching * local.spacing);
+  if (p.size() == 0) {
+    return;
+  }
+  const NeighbourList list = make_neighbours(p, {}, touching * p.spacing);
+  std::vector<double> pool(p.size()), liquid(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    std::tie(pool[i], liquid[i]) = levels(p, i);
+    if (p.phase[i] == Phase::lost) {
+      pool[i] = liquid[i] = nowhere;  // part of no pool
+    }
+  }
+  line.pool = measure_extent(p, list, pool, true);
+  line.any_liquid = measure_extent(p, list, liquid, false);
+  line.clumped = engine.model().flow ? clumped_fraction(p) : 0;
 }
 
 }  // namespace
 
 HistoryLine measure(const Engine& engine, double reference_temperature, double start_enthalpy) {
-  const Particles& p = engine.particles();
   HistoryLine line;
   line.time = engine.time();
   line.beam_x = engine.model().laser ? engine.model().laser->x(engine.time()) : 0;
-  std::vector<double> level(p.size());
-  // What has left the domain keeps its temperature for ever and is not part of any pool.
-  const auto here = [&](std::size_t i) { return p.phase[i] != Phase::lost; };
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    level[i] = here(i) ? p.temperature[i] - reference_temperature : nowhere;
-    line.peak_temperature = std::max(line.peak_temperature, here(i) ? p.temperature[i] : 0.0);
-  }
-  line.pool = measure_extent(p, engine.neighbours(), level, true);
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    level[i] = here(i) ? p.temperature[i] - engine.mixture().liquidus(p.concentration[i]) : nowhere;
-  }
-  line.any_liquid = measure_extent(p, engine.neighbours(), level, false);
+  measure_pool(line, engine, reference_temperature);
+  measure_melt(line, engine);
   line.absorbed_power = engine.beam().absorbed;
   line.absorbed = engine.ledger().absorbed;
   line.lost = engine.ledger().evaporated + engine.ledger().radiated + engine.ledger().convected;
   line.evaporated_mass = engine.ledger().evaporated_mass;
   line.enthalpy_change = engine.total_enthalpy() - start_enthalpy;
-  measure_melt(line, p, engine.model().flow.has_value());
   return line;
 }
 

@@ -13,7 +13,7 @@ namespace {
 template <class Visit>
 void for_each_touching(const Particles& particles, const NeighbourList& list, std::uint32_t i,
                        const Visit& visit) {
-  const double touch = 1.8 * particles.spacing;
+  const double touch = touching * particles.spacing;
   for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
     const std::uint32_t j = list.index[k];
     if (j >= particles.size()) {

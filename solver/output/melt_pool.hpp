@@ -9,6 +9,9 @@
 
 namespace meltproof::solver {
 
+/// Particles nearer than this touch, in spacings.
+inline constexpr double touching = 1.8;
+
 /// Extent of a region; depth is measured down from the plate's surface z = 0.
 struct Extent {
   bool found = false;
@@ -21,7 +24,7 @@ struct Extent {
 /// zero between a particle inside and a neighbour outside (linear interpolation), so that the
 /// result does not jump by whole spacings.
 /// @param level per particle, for example T - T_ref; @param connected keep only the largest
-/// connected region by volume (neighbours within 1.8 spacings): the hottest particle may be spray.
+/// connected region by volume (of particles that touch): the hottest particle may be spray.
 Extent measure_extent(const Particles& particles, const NeighbourList& neighbours,
                       const std::vector<double>& level, bool connected);
 

@@ -17,19 +17,7 @@ import unittest
 from pathlib import Path
 
 import h5py
-
-BIN = Path(os.environ["MELTPROOF_BIN"])
-CASE = [BIN / "meltproof-solve", "solver/cases/track_1wt.toml", "--set", "powder.surface=bare", "--set", "spacing=14 um",
-        "--set", "laser.exposure=100 us", "--set", "domain.width=224 um", "--set", "domain.depth=112 um",
-        "--set", "domain.before=84 um", "--set", "domain.behind=84 um", "--set", "output.averaging_window=50 us",
-        "--set", "output.cooling_limit=60 us", "--set", "output.frame_rate=40 kHz"]
-
-
-def fields(path):
-    found = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: item[()].tobytes()}) if hasattr(item, "shape") else None)
-    return {name: content for name, content in found.items() if not name.startswith("provenance")}
+from same_bytes import assert_same, command, run_case
 
 
 class Restart(unittest.TestCase):
@@ -39,7 +27,7 @@ class Restart(unittest.TestCase):
         cls.root = Path(cls.place.name)
         cls.whole = cls.root / "whole"
         started = time.monotonic()
-        done = cls.run_case(cls.whole)
+        done = run_case(cls.whole)
         cls.duration = time.monotonic() - started
         assert done.returncode == 0, done.stderr
 
@@ -47,17 +35,9 @@ class Restart(unittest.TestCase):
     def tearDownClass(cls):
         cls.place.cleanup()
 
-    @staticmethod
-    def command(folder, *options):
-        return [str(part) for part in (*CASE, "--output", folder, *options)]
-
-    @classmethod
-    def run_case(cls, folder, *options, **more):
-        return subprocess.run(cls.command(folder, *options), capture_output=True, text=True, **more)
-
     def stop_after(self, folder, seconds, how, *options):
         """Starts the run and sends it a signal; the run may end before."""
-        run = subprocess.Popen(self.command(folder, *options), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        run = subprocess.Popen(command(folder, *options), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
             run.wait(timeout=seconds)
         except subprocess.TimeoutExpired:
@@ -68,7 +48,7 @@ class Restart(unittest.TestCase):
 
     def stop_at_a_checkpoint(self, folder, *options):
         """Stops the run by SIGTERM as soon as it has written two checkpoints."""
-        run = subprocess.Popen(self.command(folder, "--checkpoint-steps", 25, *options), stdout=subprocess.DEVNULL,
+        run = subprocess.Popen(command(folder, "--checkpoint-steps", 25, *options), stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True)
         while len(self.checkpoints(folder)) < 2 and run.poll() is None:
             time.sleep(0.002)
@@ -80,14 +60,7 @@ class Restart(unittest.TestCase):
         return sorted((folder / "checkpoints").glob("checkpoint_*.h5"))
 
     def assert_same(self, folder):
-        one, other = fields(self.whole / "run.h5"), fields(folder / "run.h5")
-        self.assertGreater(len(one), 60)
-        self.assertEqual(one.keys(), other.keys())
-        for name, content in one.items():
-            self.assertEqual(content, other[name], name)
-        self.assertEqual((self.whole / "history.csv").read_bytes(), (folder / "history.csv").read_bytes())
-        names = {path.name for path in folder.iterdir()}
-        self.assertEqual(names, {path.name for path in self.whole.iterdir()}, "nothing is left behind")
+        assert_same(self, self.whole, folder)
 
     def test_a_stopped_run_goes_on_to_the_same_bytes_with_another_number_of_threads(self):
         folder = self.root / "stopped"
@@ -96,7 +69,7 @@ class Restart(unittest.TestCase):
         self.assertIn("--restart", said)
         self.assertFalse((folder / "run.h5").exists())
         self.assertLessEqual(len(self.checkpoints(folder)), 2)
-        done = self.run_case(folder, "--threads", 2, "--restart")
+        done = run_case(folder, "--threads", 2, "--restart")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("goes on from", done.stderr)
         self.assert_same(folder)
@@ -108,7 +81,7 @@ class Restart(unittest.TestCase):
         self.assertEqual(len(found), 2)
         with h5py.File(found[-1], "r+") as file:
             file["enthalpy"][7] += 1e-3
-        done = self.run_case(folder, "--restart")
+        done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("enthalpy does not have the checksum", done.stderr)
         self.assertIn("goes on from " + str(found[0]), done.stderr)
@@ -119,7 +92,7 @@ class Restart(unittest.TestCase):
         self.stop_at_a_checkpoint(folder)
         found = self.checkpoints(folder)
         found[-1].write_bytes(found[-1].read_bytes()[:2000])
-        done = self.run_case(folder, "--restart")
+        done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("goes on from " + str(found[0]), done.stderr)
         self.assert_same(folder)
@@ -128,7 +101,7 @@ class Restart(unittest.TestCase):
         folder = self.root / "other"
         self.stop_at_a_checkpoint(folder)
         before = self.checkpoints(folder)
-        done = self.run_case(folder, "--restart", "--set", "laser.power=100 W")
+        done = run_case(folder, "--restart", "--set", "laser.power=100 W")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("another input", done.stderr)
         self.assertEqual(self.checkpoints(folder), before)
@@ -141,7 +114,7 @@ class Restart(unittest.TestCase):
             with h5py.File(place, "r+") as file:
                 file["provenance"].attrs["revision"] = "0123456789ab"
                 del file["melt/recoil"]
-        done = self.run_case(folder, "--restart")
+        done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("was made by revision 0123456789ab", done.stderr)
         self.assertIn("leave out --restart to begin anew", done.stderr)
@@ -149,12 +122,12 @@ class Restart(unittest.TestCase):
 
     def test_without_a_checkpoint_it_begins_and_without_restart_it_begins_anew(self):
         folder = self.root / "anew"
-        done = self.run_case(folder, "--restart")
+        done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("from the beginning", done.stderr)
         shutil.rmtree(folder)
         self.stop_at_a_checkpoint(folder)
-        done = self.run_case(folder)
+        done = run_case(folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("goes on", done.stderr)
         self.assert_same(folder)
@@ -169,12 +142,12 @@ class Restart(unittest.TestCase):
         def small_files():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-        done = self.run_case(folder, "--restart", "--checkpoint-steps", 20, preexec_fn=small_files)
+        done = run_case(folder, "--restart", "--checkpoint-steps", 20, preexec_fn=small_files)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("cannot be written", done.stderr)
         self.assertIn("the one before it stands", done.stderr)
         self.assertEqual(self.checkpoints(folder), before)
-        self.assertEqual(self.run_case(folder, "--restart").returncode, 0)
+        self.assertEqual(run_case(folder, "--restart").returncode, 0)
         self.assert_same(folder)
 
     @unittest.skipUnless("long" in sys.argv, "kills the run fifty times: only with the argument long")
@@ -193,7 +166,7 @@ class Restart(unittest.TestCase):
                 continue
             self.assertEqual(status, -signal.SIGKILL, said)
             kills += 1
-        done = self.run_case(folder, "--restart")
+        done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_same(folder)
 

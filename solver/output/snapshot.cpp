@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "solver/output/whole.hpp"
+
 namespace meltproof::solver {
 namespace {
 
@@ -96,8 +98,13 @@ class SnapshotWriter {
 
 std::span<const SnapshotField> snapshot_fields() { return fields; }
 
-void write_snapshot(ArtifactWriter& writer, std::size_t number, const Engine& engine) {
-  const Particles& p = engine.particles();
+void write_snapshot(ArtifactWriter* file, std::size_t number, const Engine& engine) {
+  const Whole whole(engine);
+  if (file == nullptr) {
+    return;
+  }
+  ArtifactWriter& writer = *file;
+  const Particles& p = whole.particles();
   const std::string group = fmt::format("snapshots/{:04}/", number);
   const Vector beam{engine.model().laser ? engine.model().laser->x(engine.time()) : 0, 0, 0};
   writer.write(group + "time", engine.time(), "s", "since the beam went on");
@@ -122,9 +129,9 @@ void write_snapshot(ArtifactWriter& writer, std::size_t number, const Engine& en
   to.write("freeze_time", of(p.freeze_time));
   to.write("cooling_rate", of(p.cooling_rate));
   to.write("freeze_gradient", of(p.freeze_gradient));
-  if (engine.model().flow && engine.flow().pressure().size() >= p.size()) {
+  if (!whole.pressure().empty()) {
     to.write("pressure", [&](std::uint32_t i) {
-      return p.phase[i] == Phase::liquid ? engine.flow().pressure()[i] : 0.0;
+      return p.phase[i] == Phase::liquid ? whole.pressure()[i] : 0.0;
     });
   }
 }

@@ -29,6 +29,7 @@ std::span<const SnapshotField> snapshot_fields();
 
 /// Writes the particles of the present moment into the group snapshots/<number, four digits>,
 /// ordered by identity, so that a snapshot does not depend on how the engine keeps its particles.
-void write_snapshot(ArtifactWriter& writer, std::size_t number, const Engine& engine);
+/// Collective. @param writer null on all ranks but the root.
+void write_snapshot(ArtifactWriter* writer, std::size_t number, const Engine& engine);
 
 }  // namespace meltproof::solver

@@ -19,30 +19,41 @@ struct CellGrid {
   double size = 0;
   std::vector<std::uint32_t> first, member;
 
-  CellGrid(const std::vector<Vector>& points, double cell_size) : size(cell_size) {
+  /// @param home of the first points; the rest are all there.
+  CellGrid(const std::vector<Vector>& points, const std::vector<Home>& home, double cell_size)
+      : size(cell_size) {
+    const auto there = [&](std::size_t i) { return i >= home.size() || home[i] != Home::nowhere; };
     Vector upper{};
     lower.fill(std::numeric_limits<double>::infinity());
     upper.fill(-std::numeric_limits<double>::infinity());
-    for (const auto& p : points) {
-      for (std::size_t d = 0; d < 3; ++d) {
-        lower[d] = std::min(lower[d], p[d]);
-        upper[d] = std::max(upper[d], p[d]);
+    std::size_t present = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (there(i)) {
+        ++present;
+        for (std::size_t d = 0; d < 3; ++d) {
+          lower[d] = std::min(lower[d], points[i][d]);
+          upper[d] = std::max(upper[d], points[i][d]);
+        }
       }
     }
-    for (std::size_t d = 0; d < 3; ++d) {
+    for (std::size_t d = 0; d < 3 && present > 0; ++d) {
       count[d] = 1 + static_cast<std::int64_t>((upper[d] - lower[d]) / size);
     }
     first.assign(static_cast<std::size_t>(count[0] * count[1] * count[2]) + 1, 0);
-    for (const auto& p : points) {
-      ++first[cell(of(p)) + 1];
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (there(i)) {
+        ++first[cell(of(points[i])) + 1];
+      }
     }
     for (std::size_t c = 1; c < first.size(); ++c) {
       first[c] += first[c - 1];
     }
     auto next = first;
-    member.resize(points.size());
+    member.resize(present);
     for (std::uint32_t i = 0; i < points.size(); ++i) {
-      member[next[cell(of(points[i]))]++] = i;
+      if (there(i)) {
+        member[next[cell(of(points[i]))]++] = i;
+      }
     }
   }
   std::array<std::int64_t, 3> of(const Vector& p) const {
@@ -58,14 +69,14 @@ struct CellGrid {
   /// Calls visit(j) for the members of the cell of `p` and the cells around it.
   template <class Visit>
   void around(const Vector& p, const Visit& visit) const {
-    const auto home = of(p);
-    for (std::int64_t cz = std::max<std::int64_t>(0, home[2] - 1);
-         cz <= std::min(count[2] - 1, home[2] + 1); ++cz) {
-      for (std::int64_t cy = std::max<std::int64_t>(0, home[1] - 1);
-           cy <= std::min(count[1] - 1, home[1] + 1); ++cy) {
+    const auto mine = of(p);
+    for (std::int64_t cz = std::max<std::int64_t>(0, mine[2] - 1);
+         cz <= std::min(count[2] - 1, mine[2] + 1); ++cz) {
+      for (std::int64_t cy = std::max<std::int64_t>(0, mine[1] - 1);
+           cy <= std::min(count[1] - 1, mine[1] + 1); ++cy) {
         // Cells along x follow each other in memory, so three of them are one run.
-        const std::size_t low = cell({std::max<std::int64_t>(0, home[0] - 1), cy, cz}),
-                          high = cell({std::min(count[0] - 1, home[0] + 1), cy, cz});
+        const std::size_t low = cell({std::max<std::int64_t>(0, mine[0] - 1), cy, cz}),
+                          high = cell({std::min(count[0] - 1, mine[0] + 1), cy, cz});
         for (std::uint32_t k = first[low]; k < first[high + 1]; ++k) {
           visit(member[k]);
         }
@@ -87,17 +98,47 @@ double squared_distance(const Vector& a, const Vector& b) {
   return x * x + y * y + z * z;
 }
 
-/// Everybody who may be a neighbour of the members of one cell, by index, so that the lists come
+/// The order in which neighbours stand in lists: particles by Particles::before(), images behind
+/// them by index. Indices follow it up to the first particle that came from another rank since the
+/// last sort.
+struct ListOrder {
+  const Particles& particles;
+  std::uint32_t alike = 0;  ///< below this index, order and index are the same
+
+  explicit ListOrder(const Particles& p) : particles(p) {
+    const auto n = static_cast<std::uint32_t>(p.size());
+    while (alike < n && (alike == 0 || p.before(alike - 1, alike))) {
+      ++alike;
+    }
+    if (alike == n) {
+      alike = std::numeric_limits<std::uint32_t>::max();
+    }
+  }
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    const auto n = static_cast<std::uint32_t>(particles.size());
+    return a < n && b < n ? particles.before(a, b) : a < b;
+  }
+  void sort(std::vector<std::uint32_t>& indices) const {
+    std::sort(indices.begin(), indices.end());
+    const auto rest = std::lower_bound(indices.begin(), indices.end(), alike);
+    if (rest != indices.end()) {
+      std::sort(rest, indices.end(), *this);
+      std::inplace_merge(indices.begin(), rest, indices.end(), *this);
+    }
+  }
+};
+
+/// Everybody who may be a neighbour of the members of one cell, in order, so that the lists come
 /// out sorted without a sort of each; coordinates apart, so that distances are taken in lanes.
 struct Candidates {
   std::vector<std::uint32_t> index;
   std::vector<double> x, y, z, limit, squared;
 
-  void gather(const CellGrid& grid, const std::vector<Vector>& points,
+  void gather(const CellGrid& grid, const ListOrder& order, const std::vector<Vector>& points,
               const std::vector<double>& limits, const Vector& member) {
     index.clear();
     grid.around(member, [&](std::uint32_t j) { index.push_back(j); });
-    std::sort(index.begin(), index.end());
+    order.sort(index);
     const std::size_t n = index.size();
     for (auto* field : {&x, &y, &z, &limit, &squared}) {
       field->resize(n);
@@ -133,8 +174,9 @@ struct Candidates {
 /// Appends the lists of `members`, in increasing order, to list.index: cell by cell, then joined in
 /// the members' order, so that the result does not depend on the number of threads.
 /// @param limits per point, m2: two points are neighbours below the larger of theirs.
-void append_lists(NeighbourList& list, const CellGrid& grid, const std::vector<Vector>& points,
-                  const std::vector<std::uint32_t>& members, const std::vector<double>& limits) {
+void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
+                  const std::vector<Vector>& points, const std::vector<std::uint32_t>& members,
+                  const std::vector<double>& limits) {
   // The members of each cell that has any.
   std::vector<std::uint32_t> count(grid.first.size(), 0), cells;
   std::vector<std::uint32_t> home(members.size());
@@ -159,7 +201,7 @@ void append_lists(NeighbourList& list, const CellGrid& grid, const std::vector<V
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t c = 0; c < cells.size(); ++c) {
       auto& out = part[c];
-      candidates.gather(grid, points, limits, points[inside[c].front()]);
+      candidates.gather(grid, order, points, limits, points[inside[c].front()]);
       for (const std::uint32_t i : inside[c]) {
         const std::size_t begin = out.size();
         candidates.append(i, points[i], limits[i], out);
@@ -205,7 +247,7 @@ double NeighbourList::mean_neighbours() const {
 NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
                               double reach) {
   const std::vector<Vector> points = all_points(particles, ghosts);
-  const CellGrid grid(points, reach);
+  const CellGrid grid(points, particles.home, reach);
   NeighbourList list;
   list.reach = reach;
   list.void_index = static_cast<std::uint32_t>(points.size());
@@ -213,7 +255,8 @@ NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghos
   list.last.assign(particles.size(), 0);
   std::vector<std::uint32_t> everyone(particles.size());
   std::iota(everyone.begin(), everyone.end(), 0U);
-  append_lists(list, grid, points, everyone, std::vector<double>(points.size(), reach * reach));
+  append_lists(list, grid, ListOrder(particles), points, everyone,
+               std::vector<double>(points.size(), reach * reach));
   list.first.back() = list.index.size();
   return list;
 }
@@ -228,7 +271,15 @@ void MovingNeighbours::build(const Particles& particles, const std::vector<Ghost
 }
 
 void MovingNeighbours::rebuild(const Particles& particles, const std::vector<Ghost>& ghosts,
-                               const std::vector<std::uint8_t>& mobile) {
+                               const std::vector<std::uint8_t>& mobile,
+                               const std::vector<std::uint32_t>& arrived) {
+  const std::size_t n = particles.size();
+  list_.first.resize(n + 1, 0);
+  list_.last.resize(n, 0);
+  touched_.resize(n, 0);
+  for (const std::uint32_t i : arrived) {
+    touched_[i] = 1;
+  }
   // Images come and go, and with them the indices in everybody's list.
   make(particles, ghosts, mobile, !ghosts.empty());
 }
@@ -242,14 +293,14 @@ void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>
   for (const auto& ghost : ghosts) {
     moves.push_back(mobile[ghost.source]);
   }
-  const CellGrid grid(points, support_ + skin_);
+  const CellGrid grid(points, particles.home, support_ + skin_);
   list_.void_index = static_cast<std::uint32_t>(points.size());
   if (all) {
     kept_ = 0;
     touched_.assign(n, 0);
   }
   for_each_particle(points.size(), [&](std::size_t i) {
-    if (moves[i] == 0) {
+    if (moves[i] == 0 || (i < n && particles.home[i] == Home::nowhere)) {
       return;
     }
     grid.around(points[i], [&](std::uint32_t j) {
@@ -261,7 +312,10 @@ void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>
   });
   remade_.clear();
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (all || touched_[i] != 0) {
+    if (particles.home[i] != Home::here) {
+      // Nobody sums over the neighbours of a copy.
+      list_.first[i] = list_.last[i] = 0;
+    } else if (all || touched_[i] != 0) {
       remade_.push_back(i);
     }
   }
@@ -270,7 +324,7 @@ void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>
   for (std::size_t i = 0; i < points.size(); ++i) {
     limits[i] = moves[i] != 0 ? far : near;
   }
-  append_lists(list_, grid, points, remade_, limits);
+  append_lists(list_, grid, ListOrder(particles), points, remade_, limits);
   if (all) {
     kept_ = list_.index.size();
   }

@@ -12,8 +12,8 @@ namespace meltproof::solver {
 
 /// For every particle the indices of its neighbours without itself: particles count from 0, ghosts
 /// follow behind them, and the void record, which takes part in nothing, is the last index. Each
-/// list is in increasing index, that is in space-filling order, and padded with the void to whole
-/// lanes.
+/// list is in the order of Particles::before(), that is in space-filling order, and padded with the
+/// void to whole lanes. Only particles of this rank have one.
 struct NeighbourList {
   std::vector<std::size_t> first;  ///< list of i begins at index[first[i]]; size n + 1
   std::vector<std::size_t> last;   ///< and ends before index[last[i]]; size n. Lists made in one go
@@ -44,9 +44,11 @@ class MovingNeighbours {
   void build(const Particles& particles, const std::vector<Ghost>& ghosts,
              const std::vector<std::uint8_t>& mobile);
   /// Remakes the lists of the particles that have, or since build() had, a mobile particle within
-  /// reach. Indices must not have changed since build(); with ghosts it makes every list.
+  /// reach. Indices must not have changed since build(), but that particles may have been added
+  /// behind; with ghosts it makes every list. @param arrived from other ranks since the last call.
   void rebuild(const Particles& particles, const std::vector<Ghost>& ghosts,
-               const std::vector<std::uint8_t>& mobile);
+               const std::vector<std::uint8_t>& mobile,
+               const std::vector<std::uint32_t>& arrived = {});
 
   const NeighbourList& list() const { return list_; }
   double skin() const { return skin_; }

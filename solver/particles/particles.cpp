@@ -50,9 +50,11 @@ void Particles::add(std::int64_t id, const Vector& at, double m, double v, doubl
   origin.push_back(from);
   phase.push_back(Phase::solid);
   melted.push_back(0);
+  order.push_back(order.size());
+  home.push_back(Home::here);
 }
 
-void sort_in_space(Particles& particles, double cell_size) {
+Vector lower_corner(const Particles& particles) {
   Vector lower;
   lower.fill(std::numeric_limits<double>::infinity());
   for (const auto& at : particles.position) {
@@ -60,37 +62,26 @@ void sort_in_space(Particles& particles, double cell_size) {
       lower[d] = std::min(lower[d], at[d]);
     }
   }
-  std::vector<std::uint64_t> key(particles.size());
+  return lower;
+}
+
+void sort_in_space(Particles& particles, double cell_size) {
+  sort_in_space(particles, cell_size, lower_corner(particles));
+}
+
+void sort_in_space(Particles& particles, double cell_size, const Vector& lower) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     std::array<std::uint64_t, 3> cell{};
     for (std::size_t d = 0; d < 3; ++d) {
       cell[d] = static_cast<std::uint64_t>((particles.position[i][d] - lower[d]) / cell_size);
     }
-    key[i] = spread(cell[0]) | spread(cell[1]) << 1U | spread(cell[2]) << 2U;
+    particles.order[i] = spread(cell[0]) | spread(cell[1]) << 1U | spread(cell[2]) << 2U;
   }
-  std::vector<std::uint32_t> order(particles.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return key[a] != key[b] ? key[a] < key[b] : particles.identity[a] < particles.identity[b];
-  });
-  permute(particles.identity, order);
-  permute(particles.position, order);
-  permute(particles.velocity, order);
-  permute(particles.mass, order);
-  permute(particles.volume, order);
-  permute(particles.density, order);
-  permute(particles.enthalpy, order);
-  permute(particles.concentration, order);
-  permute(particles.temperature, order);
-  permute(particles.liquid_fraction, order);
-  permute(particles.peak_temperature, order);
-  permute(particles.melt_time, order);
-  permute(particles.freeze_time, order);
-  permute(particles.cooling_rate, order);
-  permute(particles.freeze_gradient, order);
-  permute(particles.origin, order);
-  permute(particles.phase, order);
-  permute(particles.melted, order);
+  std::vector<std::uint32_t> sorted(particles.size());
+  std::iota(sorted.begin(), sorted.end(), 0U);
+  std::sort(sorted.begin(), sorted.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return particles.before(a, b); });
+  particles.each_array([&](auto& values) { permute(values, sorted); });
 }
 
 }  // namespace meltproof::solver

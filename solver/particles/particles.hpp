@@ -22,6 +22,13 @@ enum class Phase : std::uint8_t {
   lost = 3,    ///< left the domain: stays where it left, takes part in nothing
 };
 
+/// Whose a particle is, where several ranks share a run.
+enum class Home : std::uint8_t {
+  nowhere = 0,    ///< no particle: it moved to another rank, and its entries are free
+  here = 1,       ///< of this rank, which computes it
+  elsewhere = 2,  ///< a copy of another rank's, near this one's
+};
+
 /// All particles, one entry per particle in every array.
 struct Particles {
   int dimensions = 3;
@@ -44,14 +51,60 @@ struct Particles {
   std::vector<Origin> origin;
   std::vector<Phase> phase;
   std::vector<std::uint8_t> melted;  ///< 1 once the particle has been fully liquid
+  /// Who comes first in every sum over neighbours, then by identity: the space-filling order when
+  /// the particles were last sorted, whatever their indices on this rank.
+  std::vector<std::uint64_t> order;
+  std::vector<Home> home;  ///< all here, but where several ranks share a run
 
   std::size_t size() const { return identity.size(); }
   /// Appends a particle at rest; temperature and liquid fraction follow with the first step.
   void add(std::int64_t id, const Vector& at, double m, double v, double h, double c, Origin from);
+  /// Calls visit(values) for each array, of whatever type.
+  template <class Visit>
+  void each_array(const Visit& visit) {
+    each_array(*this, [&](const auto&, auto& values) { visit(values); });
+  }
+  /// Calls visit(values, others) for each array and that of another set of particles.
+  template <class Visit>
+  void each_array(Particles& other, const Visit& visit) const;
+  /// Whether particle a comes before particle b in sums.
+  bool before(std::uint32_t a, std::uint32_t b) const {
+    return order[a] != order[b] ? order[a] < order[b] : identity[a] < identity[b];
+  }
 };
 
+template <class Visit>
+void Particles::each_array(Particles& other, const Visit& visit) const {
+  visit(identity, other.identity);
+  visit(position, other.position);
+  visit(velocity, other.velocity);
+  visit(mass, other.mass);
+  visit(volume, other.volume);
+  visit(density, other.density);
+  visit(enthalpy, other.enthalpy);
+  visit(concentration, other.concentration);
+  visit(temperature, other.temperature);
+  visit(liquid_fraction, other.liquid_fraction);
+  visit(peak_temperature, other.peak_temperature);
+  visit(melt_time, other.melt_time);
+  visit(freeze_time, other.freeze_time);
+  visit(cooling_rate, other.cooling_rate);
+  visit(freeze_gradient, other.freeze_gradient);
+  visit(origin, other.origin);
+  visit(phase, other.phase);
+  visit(melted, other.melted);
+  visit(order, other.order);
+  visit(home, other.home);
+}
+
+/// The least coordinates of all particles, m; infinite without any.
+Vector lower_corner(const Particles& particles);
+
 /// Puts the particles in Morton order of cells of the given size, by identity within a cell: the
-/// order depends on the particles alone, neither on how they were made nor on threads.
+/// order depends on the particles alone, neither on how they were made nor on threads. Sets
+/// Particles::order.
 void sort_in_space(Particles& particles, double cell_size);
+/// The same with cells counted from `lower`, the corner of the particles of all ranks, m.
+void sort_in_space(Particles& particles, double cell_size, const Vector& lower);
 
 }  // namespace meltproof::solver

@@ -19,7 +19,8 @@ Particles sorted(Particles particles, double smoothing_ratio) {
 
 }  // namespace
 
-Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model)
+Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model,
+               const Ranks& ranks)
     : particles_(sorted(std::move(particles), model.smoothing_ratio)),
       mixture_(std::move(mixture)),
       diffusivity_law_(std::move(diffusivity)),
@@ -28,24 +29,34 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
                              model.heat_moments)),
       species_kernel_(lattice_kernel(particles_.spacing, model.smoothing_ratio,
                                      particles_.dimensions, model.species_moments)),
+      halo_(std::make_unique<Halo>(ranks)),
+      decomposition_(ranks),
       neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0) {
-  const std::size_t n = particles_.size();
   // Without sleep no temperature is the start's, and everybody is awake.
   start_temperature_ =
-      model_.sleep_below > 0 && n > 0
+      model_.sleep_below > 0 && particles_.size() > 0
           ? mixture_.temperature(particles_.enthalpy[0], particles_.concentration[0])
           : -1e9;
-  mobile_.assign(n, 0);
-  prepare();
-  for_each_particle(n, [&](std::size_t i) { refresh(i); });
-  refresh_ghosts();
-  if (model_.laser || model_.surface_loss) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
-                            model_.laser ? model_.laser->slant() : Slant{});
+  mobile_.assign(particles_.size(), 0);
+  if (!ranks.alone()) {
+    check_ranks();
+    divide(particles_.position);
   }
+  prepare();
+  for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
+  refresh_ghosts();
+  look_from_above();
   check_numbers();
   if (flow_) {
     start_flow();
+  }
+}
+
+/// What the beam meets, and what loses heat through its plan area.
+void Engine::look_from_above() {
+  if (model_.laser || model_.surface_loss) {
+    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
+                            model_.laser ? model_.laser->slant() : Slant{}, ranks());
   }
 }
 
@@ -56,7 +67,7 @@ void Engine::prepare() {
     field->assign(particles_.size(), 0.0);
   }
   if (model_.flow) {
-    flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions);
+    flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions, *halo_);
   }
   ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
   neighbours_.build(particles_, ghosts_, mobile_);
@@ -76,7 +87,7 @@ void Engine::place_records() {
     const double volume = particles_.volume[source];
     auto& heat = heat_records_[at];
     auto& species = species_records_[at];
-    if (particles_.phase[source] == Phase::lost) {
+    if (particles_.phase[source] == Phase::lost || particles_.home[source] == Home::nowhere) {
       heat = {};
       species = {};
       return;
@@ -97,18 +108,23 @@ void Engine::place_records() {
   species_records_.back() = {};
 }
 
-double Engine::total_enthalpy() const {
-  return block_sum(particles_.size(),
-                   [&](std::size_t i) { return particles_.mass[i] * particles_.enthalpy[i]; });
+double Engine::total_of(const std::vector<double>& specific) const {
+  ExactSum sum = exact_sum(particles_.size(), [&](std::size_t i) {
+    return particles_.home[i] == Home::here ? particles_.mass[i] * specific[i] : 0.0;
+  });
+  ranks().add(sum);
+  return sum.total();
 }
 
-double Engine::total_additive_mass() const {
-  return block_sum(particles_.size(),
-                   [&](std::size_t i) { return particles_.mass[i] * particles_.concentration[i]; });
-}
+double Engine::total_enthalpy() const { return total_of(particles_.enthalpy); }
+
+double Engine::total_additive_mass() const { return total_of(particles_.concentration); }
 
 /// Everything that follows from a particle's enthalpy and concentration, its record included.
 void Engine::refresh(std::size_t i) {
+  if (particles_.home[i] == Home::nowhere) {
+    return;
+  }
   const double enthalpy = particles_.enthalpy[i], concentration = particles_.concentration[i];
   const double temperature = mixture_.temperature(enthalpy, concentration);
   const double liquid = mixture_.liquid_fraction(enthalpy, concentration);
@@ -150,7 +166,7 @@ void Engine::check_numbers() const {
                        time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2]);
   };
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (!std::isfinite(particles_.temperature[i])) {
+    if (particles_.home[i] == Home::here && !std::isfinite(particles_.temperature[i])) {
       throw std::runtime_error(fmt::format(
           "{}: the temperature is not a number (enthalpy {:.6g} J/kg, concentration {:.6g}; last "
           "conducted power {:.6g} W/m3, source {:.6g} W)",

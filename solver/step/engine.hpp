@@ -3,17 +3,21 @@
 // then the melt flows through it in as many acoustic ones as that needs.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/material.hpp"
 #include "solver/flow/free_surface.hpp"
 #include "solver/multiphase/gas.hpp"
+#include "solver/parallel/decomposition.hpp"
+#include "solver/parallel/halo.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/neighbours.hpp"
 #include "solver/step/engine_state.hpp"
 #include "solver/step/time_step.hpp"
+#include "solver/step/traveller.hpp"
 #include "solver/terms/conduction.hpp"
 #include "solver/terms/laser.hpp"
 #include "solver/terms/species.hpp"
@@ -55,24 +59,36 @@ struct Model {
   double freezing_fraction = 0.98;
 };
 
-/// The particles, everything derived from them, and the clock.
+/// The particles, everything derived from them, and the clock. Several ranks share an engine: each
+/// is given all of the particles, keeps those of its part of space with copies of what is near
+/// them, and calls everything here that says so together with the others. Whatever their number,
+/// every particle has the same bits.
 class Engine {
  public:
   /// Takes the particles over and puts them in space-filling order.
-  Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model);
+  /// @throws InputError where several ranks cannot share the model: faces other than open ones, gas
+  /// around the metal, conduction along surfaces.
+  Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, const Model& model,
+         const Ranks& ranks = {});
   /// Goes on from a state of an engine with the same mixture, diffusivity and model: every later
-  /// number is the one that engine would have found. Not with gas around the metal.
-  Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model);
-  /// The present state, between two steps. @throws std::logic_error with gas around the metal.
+  /// number is the one that engine would have found, on as many ranks as may be. Not with gas
+  /// around the metal. @param state the same on all ranks.
+  Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model,
+         const Ranks& ranks = {});
+  /// The present state, between two steps; of several ranks, of all on the root and of none
+  /// elsewhere (collective). @throws std::logic_error with gas around the metal.
   EngineState state() const;
 
   /// Advances by the smallest limit, but not beyond `until` (s). Returns the step taken, s.
-  /// @throws std::runtime_error naming particle and term if a number is no longer one.
+  /// Collective. @throws std::runtime_error naming particle and term if a number is no longer one.
   double step(double until);
 
   double time() const { return time_; }
   std::size_t steps() const { return steps_; }
+  const Ranks& ranks() const { return halo_->ranks(); }
+  /// Those of this rank and copies of others near them, see Particles::home.
   const Particles& particles() const { return particles_; }
+  const Halo& halo() const { return *halo_; }
   const Mixture& mixture() const { return mixture_; }
   const Model& model() const { return model_; }
   const NeighbourList& neighbours() const { return neighbours_.list(); }
@@ -87,15 +103,28 @@ class Engine {
   const StepTimes& times() const { return times_; }
   std::size_t flow_steps() const { return flow_count_; }  ///< acoustic steps so far
   std::size_t list_builds() const { return list_builds_; }
+  /// What limited the flow on all ranks so far; collective.
+  LimiterCounts limiters() const;
+  /// Largest over mean cost of a rank when they were last divided anew, 1 if perfect.
+  double imbalance() const { return imbalance_; }
   std::size_t lost() const { return lost_; }  ///< particles that left the domain
   /// Gives the liquid particles a velocity and lets the flow see it; for the start of a case.
   void set_state(const std::vector<Vector>& velocity, const std::vector<double>& density);
 
-  double total_enthalpy() const;       ///< sum of m H, J
-  double total_additive_mass() const;  ///< sum of m C, kg
+  /// All particles of all ranks in the engine's order, on the root; nothing elsewhere (collective).
+  std::vector<Traveller> gather() const { return gather({}); }
+  /// The chosen particles of all ranks and those that touch them, in the engine's order, on the
+  /// root; nothing elsewhere (collective). @param chosen per entry of particles(); @param touch the
+  /// distance below which particles touch, m, at most the kernel's support.
+  Particles collect(const std::vector<std::uint8_t>& chosen, double touch) const;
+
+  double total_enthalpy() const;       ///< sum of m H of all ranks, J; collective
+  double total_additive_mass() const;  ///< sum of m C of all ranks, kg; collective
 
  private:
   void prepare();
+  void look_from_above();
+  double total_of(const std::vector<double>& specific) const;
   void refresh(std::size_t i);
   void refresh_ghosts();
   void check_numbers() const;
@@ -114,19 +143,45 @@ class Engine {
   // Flow, in engine_flow.cpp
   void start_flow();
   bool change_phases();
+  void copy_phases();
   void refresh_melt();
   void rebuild_lists(bool everything);
+  void sort_particles();
+  void keep_in_period();
   void advance_flow(double dt, int steps);
   void advance_gas(double dt);
   double largest_speed() const;
   double farthest_moved() const;
   [[noreturn]] void report_unstable(std::uint32_t particle, double moved) const;
 
+  // Ranks, in engine_ranks.cpp
+  struct Moved {
+    std::vector<std::uint32_t> arrived, entries;
+  };
+  /// @param chosen per entry; none: all.
+  std::vector<Traveller> gather(const std::vector<std::uint8_t>& chosen) const;
+  double copy_reach() const;
+  void check_ranks() const;
+  std::vector<std::uint32_t> divide(const std::vector<Vector>& at);
+  void divide_anew();
+  Moved move_between_ranks(const std::vector<std::uint8_t>& before);
+  void update_copies();
+  void note_peers(const std::vector<Vector>& at);
+  void set_peers(std::vector<Halo::Peer> all);
+  std::vector<double> costs();
+  Traveller pack(std::uint32_t i) const;
+  void unpack(std::uint32_t i, const Traveller& traveller, Home home);
+  void add_free_slots();
+  std::uint32_t free_slot();
+  void fit_fields();
+
   Particles particles_;
   Mixture mixture_;
   Diffusivity diffusivity_law_;
   Model model_;
   QuinticSpline kernel_, species_kernel_;
+  std::unique_ptr<Halo> halo_;  // where it stays when an engine is moved: the flow refers to it
+  Decomposition decomposition_;
   std::vector<Ghost> ghosts_;
   MovingNeighbours neighbours_;
   SurfaceColumns surface_;
@@ -150,7 +205,10 @@ class Engine {
   std::vector<std::uint8_t> mobile_;
   std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built
   std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;
-  StepTimes times_;
+  StepTimes times_, times_at_balance_;
+  std::vector<std::uint32_t> free_;  // entries without a particle
+  bool slots_added_ = false;         // since the last rebuild
+  double imbalance_ = 1;
 };
 
 }  // namespace meltproof::solver

@@ -109,6 +109,9 @@ bool Engine::change_phases() {
   std::vector<std::uint32_t> freezing;
   bool changed = false;
   for (std::uint32_t i = 0; i < n; ++i) {
+    if (particles_.home[i] != Home::here) {
+      continue;
+    }
     const double fraction = particles_.liquid_fraction[i];
     if (particles_.phase[i] == Phase::solid && fraction >= 1) {
       particles_.phase[i] = Phase::liquid;
@@ -143,6 +146,7 @@ bool Engine::change_phases() {
     }
   }
   const Domain& domain = model_.domain;
+  std::uint64_t lost_here = 0;
   // Spatter may rise; half a millimetre above everything it is gone.
   constexpr double sky = 0.5e-3;
   for (const std::uint32_t i : flow_->liquid()) {
@@ -158,11 +162,37 @@ bool Engine::change_phases() {
       particles_.phase[i] = Phase::lost;
       particles_.velocity[i] = {};
       diffusivity_[i] = 0;
-      ++lost_;
+      ++lost_here;
       changed = true;
     }
   }
+  if (!ranks().alone()) {
+    copy_phases();
+    changed = ranks().any(changed);
+    lost_here = changed ? ranks().add(lost_here) : 0;
+  }
+  lost_ += lost_here;
   return changed;
+}
+
+/// Copies melt, freeze and get lost with those whose copies they are.
+void Engine::copy_phases() {
+  halo_->exchange(
+      Halo::everybody, 1,
+      [&](std::uint32_t i, double* out) { *out = static_cast<double>(particles_.phase[i]); },
+      [&](std::uint32_t i, const double* in) {
+        const auto phase = static_cast<Phase>(static_cast<std::uint8_t>(*in));
+        if (phase == particles_.phase[i]) {
+          return;
+        }
+        particles_.phase[i] = phase;
+        particles_.velocity[i] = {};
+        if (phase == Phase::lost) {
+          diffusivity_[i] = 0;
+        } else {
+          particles_.density[i] = particles_.mass[i] / particles_.volume[i];
+        }
+      });
 }
 
 /// Properties of the melt at the present temperature and composition.
@@ -179,14 +209,13 @@ void Engine::refresh_melt() {
                           ? recoil_pressure(temperature, concentration, mixture_, ambient)
                           : 0;
   };
-  const auto& liquid = flow_->liquid();
-  const auto& wall = flow_->wall();
-  for_each_particle(liquid.size(), [&](std::size_t k) { refresh_one(liquid[k]); });
-  for_each_particle(wall.size(), [&](std::size_t k) { refresh_one(wall[k]); });
+  for (const auto* members : flow_->near_melt()) {
+    for_each_particle(members->size(), [&](std::size_t k) { refresh_one((*members)[k]); });
+  }
 }
 
-void Engine::rebuild_lists(bool everything) {
-  const std::size_t n = particles_.size();
+/// In a periodic domain the melt's particles stay between the faces.
+void Engine::keep_in_period() {
   const Domain& domain = model_.domain;
   for (std::size_t d = 0; d < 3; ++d) {
     if (domain.face[d][0] == Face::periodic) {
@@ -197,33 +226,62 @@ void Engine::rebuild_lists(bool everything) {
       }
     }
   }
-  if (everything) {
+}
+
+/// Space-filling order, and with several ranks new parts of space for them.
+void Engine::sort_particles() {
+  if (ranks().alone()) {
     sort_in_space(particles_, 3 * kernel_.smoothing_length);
-    builds_since_sort_ = 0;
+  } else {
+    divide_anew();
+    for (auto* field : {&heat_active_, &liquid_}) {
+      field->clear();
+    }
+  }
+  builds_since_sort_ = 0;
+}
+
+void Engine::rebuild_lists(bool everything) {
+  keep_in_period();
+  if (everything) {
+    sort_particles();
+  }
+  const std::vector<std::uint8_t> before = mobile_;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    const bool moves = particles_.phase[i] == Phase::liquid ||
+                       (particles_.phase[i] == Phase::solid && particles_.liquid_fraction[i] > 0);
+    mobile_[i] = moves && particles_.home[i] != Home::nowhere ? 1 : 0;
+  }
+  Moved moved;
+  if (!everything && !ranks().alone()) {
+    moved = move_between_ranks(before);
+    everything = slots_added_;
+  }
+  slots_added_ = false;
+  ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
+  if (everything) {
+    neighbours_.build(particles_, ghosts_, mobile_);
+  } else {
+    neighbours_.rebuild(particles_, ghosts_, mobile_, moved.arrived);
+  }
+  ++list_builds_;
+  ++builds_since_sort_;
+  flow_->arrange(particles_, ghosts_, neighbours_.list(), everything || !ghosts_.empty(),
+                 moved.entries);
+  built_at_ = particles_.position;
+  place_records();
+  if (everything) {
     // Everybody has a new index: what was kept by the old ones is made afresh.
     liquid_.clear();
     for (auto& record : species_records_) {
       record.diffusivity = 0;
     }
-    for_each_particle(n, [&](std::size_t i) { refresh(i); });
+    for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    mobile_[i] = particles_.phase[i] == Phase::liquid ||
-                         (particles_.phase[i] == Phase::solid && particles_.liquid_fraction[i] > 0)
-                     ? 1
-                     : 0;
+  for (const std::uint32_t i : moved.entries) {
+    species_records_[i].diffusivity = 0;
+    refresh(i);
   }
-  ghosts_ = make_ghosts(particles_, domain, kernel_.support() + neighbours_.skin());
-  if (everything) {
-    neighbours_.build(particles_, ghosts_, mobile_);
-  } else {
-    neighbours_.rebuild(particles_, ghosts_, mobile_);
-  }
-  ++list_builds_;
-  ++builds_since_sort_;
-  flow_->arrange(particles_, ghosts_, neighbours_.list(), everything || !ghosts_.empty());
-  built_at_ = particles_.position;
-  place_records();
   if (model_.surface_conduction) {
     surface_conduction_.update(heat_records_, ghosts_, neighbours_.list(), kernel_,
                                everything ? nullptr : &heat_active_);
@@ -234,14 +292,15 @@ void Engine::rebuild_lists(bool everything) {
 void Engine::advance_flow(double dt, int steps) {
   Stopwatch watch;
   if (change_phases()) {
-    bool listed = true;
+    bool unlisted = false;
     for (std::size_t i = 0; i < particles_.size(); ++i) {
-      listed = listed && (particles_.phase[i] != Phase::liquid || mobile_[i] != 0);
+      unlisted = unlisted || (particles_.home[i] != Home::nowhere &&
+                              particles_.phase[i] == Phase::liquid && mobile_[i] == 0);
     }
-    if (listed) {
-      flow_->arrange(particles_, ghosts_, neighbours_.list(), !ghosts_.empty());
-    } else {
+    if (ranks().any(unlisted)) {
       rebuild_lists(false);
+    } else {
+      flow_->arrange(particles_, ghosts_, neighbours_.list(), !ghosts_.empty());
     }
   }
   if (builds_since_sort_ > builds_between_sorts) {
@@ -251,7 +310,7 @@ void Engine::advance_flow(double dt, int steps) {
     flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
   }
   watch.lap(times_.lists);
-  if (flow_->liquid().empty()) {
+  if (!ranks().any(!flow_->liquid().empty())) {
     return;
   }
   refresh_melt();
@@ -267,11 +326,13 @@ void Engine::advance_flow(double dt, int steps) {
   for (int s = 0; s < steps; ++s) {
     flow_->kick_and_drift(particles_, small);
     ++flow_count_;
-    const double farthest = farthest_moved();
+    const double farthest = ranks().largest(farthest_moved());
     watch.lap(times_.flow);
     if (farthest > allowed) {
       rebuild_lists(false);
       watch.lap(times_.lists);
+    } else {
+      flow_->follow(particles_);
     }
     flow_->finish(particles_, ghosts_, neighbours_.list(), melt_, small);
     watch.lap(times_.flow);

@@ -1,25 +1,81 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Taking the state out of an engine, and an engine that goes on from one.
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
 #include "solver/particles/block_sum.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
+namespace {
+
+/// The arrays of a state from what each rank sent of its particles.
+void write_particles(EngineState& state, const std::vector<Traveller>& all) {
+  Particles& p = state.particles;
+  p.each_array([&](auto& values) { values.assign(all.size(), {}); });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Traveller& t = all[i];
+    t.write(p, i);
+    p.order[i] = i;
+    state.listed_at.push_back(t.listed_at);
+    state.mobile.push_back(t.mobile);
+    state.melt.viscosity.push_back(t.viscosity);
+    state.melt.surface_tension.push_back(t.surface_tension);
+    state.melt.recoil.push_back(t.recoil);
+    if (t.phase == Phase::liquid) {
+      state.flow.acceleration.push_back(t.flow.acceleration);
+      state.flow.shift.push_back(t.flow.shift);
+      state.flow.area.push_back(t.flow.exposed);
+      state.flow.pressure.push_back(t.flow.pressure);
+    }
+  }
+}
+
+/// The entries of a flow's memory that belong to the melt of this rank.
+/// @param kept the particles that this rank keeps of all; @param home of those.
+FlowMemory part_of(const FlowMemory& memory, const Particles& all,
+                   const std::vector<std::uint32_t>& kept, const std::vector<Home>& home) {
+  std::vector<std::size_t> place(all.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    place[i] = count;
+    count += all.phase[i] == Phase::liquid ? 1 : 0;
+  }
+  FlowMemory part;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (home[k] == Home::here && all.phase[kept[k]] == Phase::liquid) {
+      const std::size_t at = place[kept[k]];
+      part.acceleration.push_back(memory.acceleration[at]);
+      part.shift.push_back(memory.shift[at]);
+      part.area.push_back(memory.area[at]);
+      part.pressure.push_back(memory.pressure[at]);
+    }
+  }
+  return part;
+}
+
+}  // namespace
 
 EngineState Engine::state() const {
   if (gas_) {
     throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
   }
   EngineState state;
-  state.particles = particles_;
-  state.listed_at = flow_ ? built_at_ : particles_.position;
-  state.mobile = mobile_;
-  if (flow_) {
-    state.flow = flow_->memory();
-    state.limiters = flow_->limiters();
-    state.melt = melt_;
+  state.particles.spacing = particles_.spacing;
+  state.particles.dimensions = particles_.dimensions;
+  if (ranks().alone()) {
+    state.particles = particles_;
+    state.listed_at = flow_ ? built_at_ : particles_.position;
+    state.mobile = mobile_;
+    if (flow_) {
+      state.flow = flow_->memory();
+      state.melt = melt_;
+    }
+  } else {
+    write_particles(state, gather());
   }
+  state.limiters = limiters();
   state.ledger = ledger_;
   state.limits = limits_;
   state.times = times_;
@@ -33,7 +89,20 @@ EngineState Engine::state() const {
   return state;
 }
 
-Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model)
+LimiterCounts Engine::limiters() const {
+  if (!flow_) {
+    return {};
+  }
+  LimiterCounts counts = flow_->limiters();
+  for (std::uint64_t* count :
+       {&counts.wall_pressure, &counts.curvature, &counts.particle_steps, &counts.wall_steps}) {
+    *count = ranks().add(*count);
+  }
+  return counts;
+}
+
+Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model,
+               const Ranks& ranks)
     : particles_(std::move(state.particles)),
       mixture_(std::move(mixture)),
       diffusivity_law_(std::move(diffusivity)),
@@ -42,6 +111,8 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
                              model.heat_moments)),
       species_kernel_(lattice_kernel(particles_.spacing, model.smoothing_ratio,
                                      particles_.dimensions, model.species_moments)),
+      halo_(std::make_unique<Halo>(ranks)),
+      decomposition_(ranks),
       neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0),
       start_temperature_(state.start_temperature),
       limits_(state.limits),
@@ -59,6 +130,17 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   if (model_.gas) {
     throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
   }
+  std::iota(particles_.order.begin(), particles_.order.end(), 0U);
+  if (!ranks.alone()) {
+    check_ranks();
+    // Whose a particle is follows from where it was when the lists were made.
+    const Particles all = particles_;
+    const std::vector<std::uint32_t> kept = divide(std::vector<Vector>(built_at_));
+    state.flow = part_of(state.flow, all, kept, particles_.home);
+    if (!ranks.root()) {
+      state.limiters = {};  // counted once
+    }
+  }
   // The lists as they were made: with who stood where then. Lists that were older than that one
   // hold nobody who has moved since, so they come out the same.
   const std::vector<Vector> now = particles_.position;
@@ -73,9 +155,8 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   refresh_ghosts();
   if (flow_) {
     flow_->remember(state.flow, state.limiters);
-  } else if (model_.laser || model_.surface_loss) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
-                            model_.laser ? model_.laser->slant() : Slant{});
+  } else {
+    look_from_above();
   }
 }
 

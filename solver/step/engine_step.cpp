@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How long a thermal step is, and its order of events.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,38 +14,46 @@ namespace meltproof::solver {
 /// The step by all criteria, where it ends, and into how many steps of the flow it falls.
 Engine::Step Engine::choose_step(double until, double surface_rate) const {
   const std::size_t n = particles_.size();
-  StepExtremes extremes;
-  extremes.smoothing_length = kernel_.smoothing_length;
-  extremes.surface_rate = surface_rate;
+  // Of all ranks in one go: thermal and species diffusivity, rate of the surface, and of the melt
+  // whether there is any, speed, kinematic viscosity, surface tension, least density.
+  enum : std::size_t { thermal, species, surface, melt, speed, viscosity, tension, density, all };
+  std::array<double, all> extreme{};
+  extreme[surface] = surface_rate;
   if (model_.conduction) {
-    extremes.thermal_diffusivity =
-        block_max(n, 0.0, [&](std::size_t i) { return thermal_diffusivity_[i]; });
+    extreme[thermal] = block_max(n, 0.0, [&](std::size_t i) { return thermal_diffusivity_[i]; });
   }
   if (model_.species) {
-    extremes.species_diffusivity =
-        block_max(n, 0.0, [&](std::size_t i) { return diffusivity_[i]; });
+    extreme[species] = block_max(n, 0.0, [&](std::size_t i) { return diffusivity_[i]; });
   }
+  extreme[density] = -std::numeric_limits<double>::infinity();
+  if (flow_) {
+    extreme[melt] = flow_->liquid().empty() ? 0 : 1;
+    extreme[speed] = largest_speed();
+    for (const std::uint32_t i : flow_->liquid()) {
+      extreme[viscosity] = std::max(extreme[viscosity], melt_.viscosity[i] / particles_.density[i]);
+      extreme[tension] = std::max(extreme[tension], melt_.surface_tension[i]);
+      extreme[density] = std::max(extreme[density], -particles_.density[i]);
+    }
+  }
+  ranks().largest(extreme);
+  StepExtremes extremes;
+  extremes.smoothing_length = kernel_.smoothing_length;
+  extremes.surface_rate = extreme[surface];
+  extremes.thermal_diffusivity = extreme[thermal];
+  extremes.species_diffusivity = extreme[species];
   Step step;
   step.limits = step_limits(extremes);
   double dt = step.limits.smallest(), flow_limit = std::numeric_limits<double>::infinity();
-  if (flow_ && !flow_->liquid().empty()) {
+  if (extreme[melt] > 0) {
     StepExtremes motion;
     motion.smoothing_length = kernel_.smoothing_length;
     motion.sound_speed = flow_->settings().sound_speed;
-    motion.speed = largest_speed();
-    motion.density = std::numeric_limits<double>::infinity();
+    motion.speed = extreme[speed];
     motion.gravity = std::hypot(flow_->settings().gravity[0], flow_->settings().gravity[1],
                                 flow_->settings().gravity[2]);
-    for (const std::uint32_t i : flow_->liquid()) {
-      const double density = particles_.density[i];
-      motion.kinematic_viscosity =
-          std::max(motion.kinematic_viscosity, melt_.viscosity[i] / density);
-      motion.surface_tension = std::max(motion.surface_tension, melt_.surface_tension[i]);
-      motion.density = std::min(motion.density, density);
-    }
-    if (!flow_->settings().surface_tension) {
-      motion.surface_tension = 0;
-    }
+    motion.kinematic_viscosity = extreme[viscosity];
+    motion.surface_tension = flow_->settings().surface_tension ? extreme[tension] : 0;
+    motion.density = -extreme[density];
     const StepLimits flow_limits = step_limits(motion);
     flow_limit = model_.step_factor * flow_limits.smallest();
     // Within one thermal step nothing moves by more than a quarter of a spacing.
@@ -85,9 +94,8 @@ double Engine::step(double until) {
   // each step see to that.
   const std::size_t n = particles_.size();
   Stopwatch watch;
-  if (flow_ && (model_.laser || model_.surface_loss)) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
-                            model_.laser ? model_.laser->slant() : Slant{});
+  if (flow_) {
+    look_from_above();
   }
   const double surface_rate = lose_surface_heat();
   const Step step = choose_step(until, surface_rate);
@@ -96,11 +104,15 @@ double Engine::step(double until) {
   beam_ = {};
   if (model_.laser && model_.laser->on(time_)) {
     // The beam stands where it is in the middle of the step.
-    beam_ = irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_);
+    beam_ = irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_, ranks());
   }
   watch.lap(times_.surface);
   if (model_.conduction) {
     find_awake(heat_records_, neighbours_.list(), heat_active_);
+    if (!ranks().alone()) {
+      std::erase_if(heat_active_,
+                    [&](std::uint32_t i) { return particles_.home[i] != Home::here; });
+    }
     conduct(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
     if (model_.surface_conduction) {
       surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
@@ -114,13 +126,20 @@ double Engine::step(double until) {
   old_enthalpy_ = particles_.enthalpy;
   old_temperature_ = particles_.temperature;
   for_each_particle(n, [&](std::size_t i) {
+    if (particles_.home[i] != Home::here) {
+      return;
+    }
     particles_.enthalpy[i] +=
         dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
     refresh(i);
   });
+  update_copies();
   // Apart from the loop above, because a gradient looks at the neighbours' new temperatures.
-  for_each_particle(
-      n, [&](std::size_t i) { note_phase_times(i, old_enthalpy_[i], old_temperature_[i], dt); });
+  for_each_particle(n, [&](std::size_t i) {
+    if (particles_.home[i] == Home::here) {
+      note_phase_times(i, old_enthalpy_[i], old_temperature_[i], dt);
+    }
+  });
   watch.lap(times_.state);
   ledger_.absorbed += dt * beam_.absorbed;
   ledger_.reflected += dt * beam_.reflected;

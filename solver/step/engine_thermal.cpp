@@ -7,8 +7,8 @@
 
 namespace meltproof::solver {
 
-/// Writes the liquid particles and their images; those that were liquid before and no longer are
-/// get no diffusivity, and the others never had one.
+/// Writes the liquid particles, copies included, and their images; those that were liquid before
+/// and no longer are get no diffusivity, and the others never had one.
 void Engine::fill_species_records(const std::vector<double>& concentration) {
   for (const std::uint32_t i : liquid_) {
     species_records_[i].concentration = concentration[i];
@@ -28,24 +28,28 @@ void Engine::advance_species(double dt) {
   }
   liquid_.clear();
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    if (diffusivity_[i] > 0) {
+    if (diffusivity_[i] > 0 && particles_.home[i] != Home::nowhere) {
       liquid_.push_back(i);
     }
   }
-  if (liquid_.empty()) {
+  if (!ranks().any(!liquid_.empty())) {
     return;
   }
+  std::vector<std::uint32_t> own;
+  std::copy_if(liquid_.begin(), liquid_.end(), std::back_inserter(own),
+               [&](std::uint32_t i) { return particles_.home[i] == Home::here; });
   fill_species_records(particles_.concentration);
-  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, liquid_,
-          rate_);
+  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, own, rate_);
   half_step_ = particles_.concentration;
-  for (const std::uint32_t i : liquid_) {
+  for (const std::uint32_t i : own) {
     half_step_[i] += 0.5 * dt * rate_[i];
   }
+  halo_->exchange(
+      Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = half_step_[i]; },
+      [&](std::uint32_t i, const double* in) { half_step_[i] = *in; });
   fill_species_records(half_step_);
-  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, liquid_,
-          rate_);
-  for (const std::uint32_t i : liquid_) {
+  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, own, rate_);
+  for (const std::uint32_t i : own) {
     if (model_.species_scheme == SpeciesScheme::midpoint) {
       particles_.concentration[i] += dt * rate_[i];
     } else {
@@ -114,16 +118,16 @@ double Engine::lose_surface_heat() {
   if (flow_) {
     std::fill(loss_area_.begin(), loss_area_.end(), 0.0);
     for (const std::uint32_t top : surface_.top) {
-      if (top != SurfaceColumns::none && particles_.phase[top] == Phase::solid) {
+      if (top < particles_.size() && particles_.phase[top] == Phase::solid) {
         loss_area_[top] += surface_.width * surface_.width;
       }
     }
     for (const std::uint32_t i : flow_->liquid()) {
       loss_area_[i] = flow_->area()[i];
     }
-    loss_ = lose_heat(particles_, loss_area_, mixture_, *model_.surface_loss, source_);
+    loss_ = lose_heat(particles_, loss_area_, mixture_, *model_.surface_loss, source_, ranks());
   } else {
-    loss_ = lose_heat(particles_, surface_, mixture_, *model_.surface_loss, source_);
+    loss_ = lose_heat(particles_, surface_, mixture_, *model_.surface_loss, source_, ranks());
   }
   return loss_.fastest_rate;
 }

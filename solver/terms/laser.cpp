@@ -101,32 +101,45 @@ Footprint inclined_footprint(const Laser& laser, double x, const SurfaceColumns&
 }  // namespace
 
 LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& columns,
-                      const std::vector<double>& absorptivity, std::vector<double>& power) {
+                      const std::vector<double>& absorptivity, std::vector<double>& power,
+                      const Ranks& ranks) {
   LaserBudget budget;
   if (!laser.on(time) || laser.power <= 0) {
     return budget;
   }
   const Footprint f = laser.incidence == 0 ? vertical_footprint(laser, laser.x(time), columns)
                                            : inclined_footprint(laser, laser.x(time), columns);
-  // One thread, always the same order: the beam covers a few thousand columns at most.
+  // Each column is met on one rank at most, so largest values join them without rounding; then all
+  // ranks add the columns up in the same order.
+  std::vector<double> absorbed(f.share.size(), 0.0);
+  std::vector<std::uint8_t> met(f.share.size(), 0);
   for (std::size_t j = 0; j < f.count; ++j) {
     const std::int64_t iy = f.first_y + static_cast<std::int64_t>(j);
     const bool inside_y = iy >= 0 && iy < static_cast<std::int64_t>(columns.count_y);
     for (std::size_t i = 0; i < f.count; ++i) {
-      const double incident = laser.power * f.share[j * f.count + i];
       const std::int64_t ix = f.first_x + static_cast<std::int64_t>(i);
       const bool inside = inside_y && ix >= 0 && ix < static_cast<std::int64_t>(columns.count_x);
       const std::uint32_t top =
           inside ? columns.at(static_cast<std::size_t>(ix), static_cast<std::size_t>(iy))
                  : SurfaceColumns::none;
-      if (top == SurfaceColumns::none) {
-        budget.missed += incident;
+      if (top == SurfaceColumns::none || top == SurfaceColumns::elsewhere) {
         continue;
       }
-      const double absorbed = absorptivity[top] * incident;
-      power[top] += absorbed;
-      budget.absorbed += absorbed;
-      budget.reflected += incident - absorbed;
+      const std::size_t column = j * f.count + i;
+      met[column] = 1;
+      absorbed[column] = absorptivity[top] * (laser.power * f.share[column]);
+      power[top] += absorbed[column];
+    }
+  }
+  ranks.largest(absorbed);
+  ranks.largest(std::span(met));
+  for (std::size_t column = 0; column < met.size(); ++column) {
+    const double incident = laser.power * f.share[column];
+    if (met[column] == 0) {
+      budget.missed += incident;
+    } else {
+      budget.absorbed += absorbed[column];
+      budget.reflected += incident - absorbed[column];
     }
   }
   return budget;

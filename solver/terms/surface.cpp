@@ -3,11 +3,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace meltproof::solver {
+namespace {
+
+/// Leaves a particle on top of a column only on the rank whose it is and where it is the highest of
+/// all ranks', of equally high ones the one with the smallest identity.
+void settle(SurfaceColumns& columns, const Particles& particles, const Ranks& ranks) {
+  const double nothing = -std::numeric_limits<double>::infinity();
+  std::vector<double> height(columns.top.size(), nothing), identity(columns.top.size(), -nothing);
+  for (std::size_t c = 0; c < height.size(); ++c) {
+    if (columns.top[c] != SurfaceColumns::none) {
+      height[c] = particles.position[columns.top[c]][2];
+    }
+  }
+  std::vector<double> highest = height;
+  ranks.largest(highest);
+  for (std::size_t c = 0; c < height.size(); ++c) {
+    if (height[c] == highest[c] && height[c] != nothing) {
+      // Identities are far below 2^53.
+      identity[c] = static_cast<double>(particles.identity[columns.top[c]]);
+    }
+  }
+  std::vector<double> first = identity;
+  ranks.smallest(first);
+  for (std::size_t c = 0; c < height.size(); ++c) {
+    if (highest[c] != nothing && identity[c] != first[c]) {
+      columns.top[c] = SurfaceColumns::elsewhere;
+    }
+  }
+}
+
+}  // namespace
 
 SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper,
-                            const Slant& slant) {
+                            const Slant& slant, const Ranks& ranks) {
   SurfaceColumns columns;
   columns.lower_x = lower[0];
   columns.lower_y = lower[1];
@@ -27,6 +58,9 @@ SurfaceColumns find_surface(const Particles& particles, const Vector& lower, con
         std::llround((x - particles.spacing / 2 - edge) / columns.width + 1e-6));
   };
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
+    if (particles.home[i] == Home::nowhere) {
+      continue;
+    }
     const Vector& at = particles.position[i];
     const std::int64_t x0 = first_column(at[0] + slant.x * at[2], columns.lower_x);
     const std::int64_t y0 = first_column(at[1] + slant.y * at[2], columns.lower_y);
@@ -40,6 +74,16 @@ SurfaceColumns find_surface(const Particles& particles, const Vector& lower, con
         if (top == SurfaceColumns::none || higher(i, top)) {
           top = i;
         }
+      }
+    }
+  }
+  if (!ranks.alone()) {
+    if (slant.x != 0 || slant.y != 0) {
+      settle(columns, particles, ranks);
+    }
+    for (std::uint32_t& top : columns.top) {
+      if (top < particles.size() && particles.home[top] != Home::here) {
+        top = SurfaceColumns::elsewhere;
       }
     }
   }

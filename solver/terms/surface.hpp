@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/parallel/ranks.hpp"
 #include "solver/particles/particles.hpp"
 
 namespace meltproof::solver {
@@ -22,9 +23,10 @@ struct Slant {
 /// them and neither normals nor the decomposition matter. Up to 45 degrees no light slips between
 /// the layers of a lattice.
 struct SurfaceColumns {
-  static constexpr std::uint32_t none = 0xffffffff;  ///< no metal in this column
-  double lower_x = 0, lower_y = 0;                   ///< m
-  double width = 0;                                  ///< m, half a spacing
+  static constexpr std::uint32_t none = 0xffffffff;  ///< no metal in this column, or too far off
+  static constexpr std::uint32_t elsewhere = 0xfffffffe;  ///< another rank's particle is on top
+  double lower_x = 0, lower_y = 0;                        ///< m
+  double width = 0;                                       ///< m, half a spacing
   std::size_t count_x = 0, count_y = 0;
   std::vector<std::uint32_t> top;  ///< particle index per column, row-major [y][x]
 
@@ -32,9 +34,10 @@ struct SurfaceColumns {
 };
 
 /// Finds the topmost particle of every column; of equally high ones the one with the smaller
-/// identity.
+/// identity. Where a particle of this rank is on top, it is so among those of all ranks: columns
+/// stand upright in the ranks' boxes, and slanted ones are settled among all ranks (collectively).
 /// @param lower, upper plan view of the domain in m; @param slant of the columns, of the beam.
 SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper,
-                            const Slant& slant = {});
+                            const Slant& slant = {}, const Ranks& ranks = {});
 
 }  // namespace meltproof::solver

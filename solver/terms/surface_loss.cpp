@@ -45,14 +45,26 @@ LossPerArea loss_per_area(double temperature, double concentration, const Mixtur
   return loss;
 }
 
-void add_loss(const LossPerArea& loss, double area, std::uint32_t i, SurfaceLossBudget& budget,
-              std::vector<double>& power) {
-  power[i] -= area * loss.total();
-  budget.evaporation += area * loss.evaporation;
-  budget.radiation += area * loss.radiation;
-  budget.convection += area * loss.convection;
-  budget.mass_rate += area * loss.mass;
-}
+/// Sums that are the same for any order of the particles, and so for any division among ranks.
+struct LossSums {
+  ExactSum evaporation, radiation, convection, mass_rate;
+
+  void add(const LossPerArea& loss, double area) {
+    evaporation.add(area * loss.evaporation);
+    radiation.add(area * loss.radiation);
+    convection.add(area * loss.convection);
+    mass_rate.add(area * loss.mass);
+  }
+  void write(SurfaceLossBudget& budget, const Ranks& ranks) {
+    for (ExactSum* sum : {&evaporation, &radiation, &convection, &mass_rate}) {
+      ranks.add(*sum);
+    }
+    budget.evaporation = evaporation.total();
+    budget.radiation = radiation.total();
+    budget.convection = convection.total();
+    budget.mass_rate = mass_rate.total();
+  }
+};
 
 void limit_rate(const Particles& particles, std::uint32_t i, const Mixture& mixture, double slope,
                 SurfaceLossBudget& budget) {
@@ -102,34 +114,40 @@ double radiation_flux(double temperature, double emissivity, double ambient_temp
 
 SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& columns,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
-                            std::vector<double>& power) {
+                            std::vector<double>& power, const Ranks& ranks) {
   SurfaceLossBudget budget;
+  LossSums sums;
   const double area = columns.width * columns.width;
   for (const std::uint32_t i : columns.top) {
-    if (i == SurfaceColumns::none) {
+    if (i == SurfaceColumns::none || i == SurfaceColumns::elsewhere) {
       continue;
     }
     const LossPerArea loss =
         loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
-    add_loss(loss, area, i, budget, power);
+    power[i] -= area * loss.total();
+    sums.add(loss, area);
     // A particle has four columns.
     limit_rate(particles, i, mixture, 4 * area * loss.slope, budget);
   }
+  sums.write(budget, ranks);
   return budget;
 }
 
 SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<double>& area,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
-                            std::vector<double>& power) {
+                            std::vector<double>& power, const Ranks& ranks) {
   SurfaceLossBudget budget;
+  LossSums sums;
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
     if (area[i] > 0) {
       const LossPerArea loss =
           loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
-      add_loss(loss, area[i], i, budget, power);
+      power[i] -= area[i] * loss.total();
+      sums.add(loss, area[i]);
       limit_rate(particles, i, mixture, area[i] * loss.slope, budget);
     }
   }
+  sums.write(budget, ranks);
   return budget;
 }
 

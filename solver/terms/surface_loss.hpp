@@ -61,15 +61,16 @@ double evaporation_flux(double temperature, double concentration, const Mixture&
 double radiation_flux(double temperature, double emissivity, double ambient_temperature);
 
 /// Takes all of it from the topmost particle of every column, each column with its plan area.
-/// @param power per particle in W, subtracted from.
+/// @param power per particle in W, subtracted from; @param ranks that share the particles: the sums
+/// of the budget are those of all (collectively), the fastest rate is this rank's.
 SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& columns,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
-                            std::vector<double>& power);
+                            std::vector<double>& power, const Ranks& ranks = {});
 
 /// The same through the surface that each particle itself stands for, seen from above or not.
-/// @param area per particle in m2, zero inside; @param power per particle in W, subtracted from.
+/// @param area per particle in m2, zero inside and for copies of other ranks' particles.
 SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<double>& area,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
-                            std::vector<double>& power);
+                            std::vector<double>& power, const Ranks& ranks = {});
 
 }  // namespace meltproof::solver

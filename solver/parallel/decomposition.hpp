@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which rank owns which part of space.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solver/parallel/ranks.hpp"
+#include "solver/particles/particles.hpp"
+
+namespace meltproof::solver {
+
+/// **Boxes of equal cost**, by recursive coordinate bisection of the plan view (Zoltan): each rank
+/// owns a column of space from the bottom to the sky. So light that comes from above meets all of a
+/// column on one rank and its neighbours, and shadows need no exchange. The boxes fill space, their
+/// outer faces lie at infinity.
+class Decomposition {
+ public:
+  explicit Decomposition(const Ranks& ranks);
+  ~Decomposition();
+  Decomposition(Decomposition&&) noexcept;
+  Decomposition& operator=(Decomposition&&) noexcept;
+
+  /// Makes new boxes, collectively. @param positions of particles of this rank, m, each particle on
+  /// one rank; @param weights their costs, any unit. @returns largest over mean cost of a rank.
+  /// @throws std::runtime_error if Zoltan could not.
+  double balance(std::span<const Vector> positions, std::span<const double> weights);
+
+  /// The rank in whose box the point lies.
+  int owner(const Vector& at) const;
+  /// The ranks whose boxes come nearer to the point than `reach` along both axes, with the owner.
+  void near(const Vector& at, double reach, std::vector<int>& found) const;
+
+ private:
+  struct Zoltan;
+  Ranks ranks_;
+  std::unique_ptr<Zoltan> zoltan_;
+};
+
+}  // namespace meltproof::solver

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/parallel/ranks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <thread>
+
+#include <mpi.h>
+
+namespace meltproof::solver {
+namespace {
+
+bool started_by_a_launcher() {
+  constexpr std::array names{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
+  return std::any_of(names.begin(), names.end(),
+                     [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+bool running() {
+  int started = 0, ended = 0;
+  MPI_Initialized(&started);
+  MPI_Finalized(&ended);
+  return started != 0 && ended == 0;
+}
+
+}  // namespace
+
+MpiSession::MpiSession() {
+  if (started_by_a_launcher() && !running()) {
+    // Threads compute, one of them speaks.
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  }
+}
+
+MpiSession::~MpiSession() {
+  if (running()) {
+    MPI_Finalize();
+  }
+}
+
+void MpiSession::give_up(int status) const {
+  if (running() && Ranks::world().size() > 1) {
+    // What all ranks find, the root says: it gets the time to.
+    if (!Ranks::world().root()) {
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+    MPI_Abort(MPI_COMM_WORLD, status);
+  }
+}
+
+Ranks Ranks::world() {
+  Ranks ranks;
+  if (running()) {
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks.size_);
+    MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank_);
+  }
+  return ranks;
+}
+
+void Ranks::largest(std::span<double> values) const {
+  if (!alone()) {
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
+                  MPI_COMM_WORLD);
+  }
+}
+
+double Ranks::largest(double value) const {
+  largest(std::span(&value, 1));
+  return value;
+}
+
+void Ranks::smallest(std::span<double> values) const {
+  if (!alone()) {
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MIN,
+                  MPI_COMM_WORLD);
+  }
+}
+
+bool Ranks::any(bool value) const { return largest(value ? 1.0 : 0.0) > 0; }
+
+void Ranks::add(ExactSum& sum) const {
+  if (!alone()) {
+    MPI_Allreduce(MPI_IN_PLACE, sum.limbs().data(), static_cast<int>(ExactSum::limb_count),
+                  MPI_INT64_T, MPI_SUM, MPI_COMM_WORLD);
+  }
+}
+
+void Ranks::add(std::span<std::uint64_t> counts) const {
+  if (!alone()) {
+    MPI_Allreduce(MPI_IN_PLACE, counts.data(), static_cast<int>(counts.size()), MPI_UINT64_T,
+                  MPI_SUM, MPI_COMM_WORLD);
+  }
+}
+
+std::uint64_t Ranks::add(std::uint64_t count) const {
+  add(std::span(&count, 1));
+  return count;
+}
+
+void Ranks::largest(std::span<std::uint8_t> flags) const {
+  if (!alone()) {
+    MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(flags.size()), MPI_UINT8_T, MPI_MAX,
+                  MPI_COMM_WORLD);
+  }
+}
+
+std::vector<std::size_t> Ranks::exchange_sizes(const std::vector<std::size_t>& sizes) const {
+  if (alone()) {
+    return sizes;
+  }
+  std::vector<std::uint64_t> out(sizes.begin(), sizes.end()), in(sizes.size());
+  MPI_Alltoall(out.data(), 1, MPI_UINT64_T, in.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  return {in.begin(), in.end()};
+}
+
+void Ranks::exchange_bytes(const void* from, const std::vector<std::size_t>& sizes, void* to,
+                           const std::vector<std::size_t>& arriving) const {
+  const auto* source = static_cast<const std::byte*>(from);
+  auto* target = static_cast<std::byte*>(to);
+  if (alone()) {
+    std::copy_n(source, sizes[0], target);
+    return;
+  }
+  // Words of eight bytes, point to point: counts of MPI are ints, and most pairs of ranks have
+  // nothing to say.
+  std::vector<MPI_Request> requests;
+  const auto count = [](std::size_t bytes) {
+    if (bytes / 8 > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw std::runtime_error("more than 16 GiB from one rank to another; use more ranks");
+    }
+    return static_cast<int>(bytes / 8);
+  };
+  std::size_t at = 0;
+  for (std::size_t r = 0; r < arriving.size(); at += arriving[r++]) {
+    if (arriving[r] > 0) {
+      MPI_Irecv(target + at, count(arriving[r]), MPI_UINT64_T, static_cast<int>(r), 1,
+                MPI_COMM_WORLD, &requests.emplace_back());
+    }
+  }
+  at = 0;
+  for (std::size_t r = 0; r < sizes.size(); at += sizes[r++]) {
+    if (sizes[r] > 0) {
+      MPI_Isend(source + at, count(sizes[r]), MPI_UINT64_T, static_cast<int>(r), 1, MPI_COMM_WORLD,
+                &requests.emplace_back());
+    }
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+}  // namespace meltproof::solver

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Any number of ranks and threads, and a restart on another number of ranks, end in the same bytes."""
+
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "output"))
+from same_bytes import assert_same, command, environment, launcher, run_case  # noqa: E402
+
+
+class AnyNumberOfRanks(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.place.name)
+        cls.whole = cls.root / "whole"
+        done = run_case(cls.whole, "--threads", 1)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    def run_and_compare(self, ranks, threads):
+        folder = self.root / f"{ranks}x{threads}"
+        done = run_case(folder, "--threads", threads, ranks=ranks)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        assert_same(self, self.whole, folder)
+
+    def test_one_rank_and_two_threads(self):
+        self.run_and_compare(1, 2)
+
+    def test_two_ranks(self):
+        self.run_and_compare(2, 1)
+
+    def test_two_ranks_of_two_threads(self):
+        self.run_and_compare(2, 2)
+
+    def test_four_ranks(self):
+        self.run_and_compare(4, 1)
+
+    def stop(self, folder, ranks):
+        """Sends SIGTERM, as a batch queue does, once there are checkpoints."""
+        run = subprocess.Popen(launcher(ranks) + command(folder, "--checkpoint-steps", 25, "--threads", 1),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment(ranks))
+        while len(list((folder / "checkpoints").glob("checkpoint_*.h5"))) < 2 and run.poll() is None:
+            time.sleep(0.002)
+        run.send_signal(signal.SIGTERM)
+        _, said = run.communicate(timeout=120)
+        self.assertNotEqual(run.returncode, 0, said)
+        self.assertIn("--restart", said)
+        self.assertFalse((folder / "run.h5").exists())
+
+    def test_stopped_on_one_rank_it_goes_on_on_three(self):
+        folder = self.root / "one_to_three"
+        self.stop(folder, 0)
+        done = run_case(folder, "--threads", 1, "--restart", ranks=3)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from", done.stderr)
+        assert_same(self, self.whole, folder)
+
+    def test_stopped_on_two_ranks_it_goes_on_on_one(self):
+        folder = self.root / "two_to_one"
+        self.stop(folder, 2)
+        done = run_case(folder, "--threads", 2, "--restart")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from", done.stderr)
+        assert_same(self, self.whole, folder)
+
+    def test_what_cannot_be_shared_is_refused_in_a_sentence(self):
+        done = run_case(self.root / "gas", "--set", "flow.surroundings=gas", ranks=2)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("cannot be divided among several ranks"), 1, done.stderr)
+
+    def test_a_bad_input_is_said_once(self):
+        done = run_case(self.root / "bad", "--set", "laser.power=-1 W", ranks=3)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("laser.power"), 1, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

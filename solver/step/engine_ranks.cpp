@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How several ranks share an engine: who owns which particle, and who keeps copies of it.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "solver/step/engine.hpp"
+#include "solver/step/traveller.hpp"
+
+namespace meltproof::solver {
+namespace {
+
+template <class T>
+void select(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+  std::vector<T> some;
+  some.reserve(kept.size());
+  for (const std::uint32_t i : kept) {
+    some.push_back(values[i]);
+  }
+  values = std::move(some);
+}
+
+template <class T>
+void select_if_there(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+  if (!values.empty()) {
+    select(values, kept);
+  }
+}
+
+}  // namespace
+
+/// A little more than the lists reach, so that rounding never leaves a neighbour out.
+double Engine::copy_reach() const { return (kernel_.support() + neighbours_.skin()) * (1 + 1e-9); }
+
+void Engine::check_ranks() const {
+  const auto refuse = [](const char* what) {
+    throw InputError(std::string(what) +
+                     " cannot be divided among several ranks: start the program without mpirun, "
+                     "with --threads for the cores");
+  };
+  if (model_.gas) {
+    refuse("surroundings = \"gas\"");
+  }
+  if (model_.surface_conduction) {
+    refuse("conduction along surfaces");
+  }
+  for (const auto& faces : model_.domain.face) {
+    for (const Face face : faces) {
+      if (face != Face::open) {
+        refuse("a domain with other than open faces");
+      }
+    }
+  }
+}
+
+/// Keeps of all particles, which every rank holds, what is this rank's or near it. @param at where
+/// they count as being. @returns which they were.
+std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
+  const Ranks& ranks = halo_->ranks();
+  const auto size = static_cast<std::size_t>(ranks.size()),
+             own = static_cast<std::size_t>(ranks.rank());
+  const std::size_t n = particles_.size(), begin = n * own / size, end = n * (own + 1) / size;
+  // The melt and what surrounds it costs by far the most; nothing has been measured yet.
+  std::vector<double> weights;
+  for (std::size_t i = begin; i < end; ++i) {
+    weights.push_back(particles_.phase[i] == Phase::liquid ? 50 : 1);
+  }
+  decomposition_.balance(std::span(at).subspan(begin, end - begin), weights);
+  std::vector<std::uint32_t> kept;
+  std::vector<int> near;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (decomposition_.owner(at[i]) == ranks.rank()) {
+      kept.push_back(i);
+      continue;
+    }
+    decomposition_.near(at[i], copy_reach(), near);
+    if (std::find(near.begin(), near.end(), ranks.rank()) != near.end()) {
+      particles_.home[i] = Home::elsewhere;
+      kept.push_back(i);
+    }
+  }
+  std::vector<Vector> places = at;  // which may be the particles' own
+  select(places, kept);
+  particles_.each_array([&](auto& values) { select(values, kept); });
+  // What an engine that goes on from a state knows beside.
+  select_if_there(mobile_, kept);
+  select_if_there(built_at_, kept);
+  for (auto* field : {&melt_.viscosity, &melt_.surface_tension, &melt_.recoil}) {
+    select_if_there(*field, kept);
+  }
+  add_free_slots();
+  note_peers(places);
+  return kept;
+}
+
+/// Free entries for particles that come from other ranks, so that indices and the void stay.
+void Engine::add_free_slots() {
+  const std::size_t n = particles_.size(), more = std::max<std::size_t>(64, n / 16);
+  particles_.each_array([&](auto& values) { values.resize(n + more); });
+  for (std::size_t i = n + more; i-- > n;) {
+    particles_.home[i] = Home::nowhere;
+    particles_.phase[i] = Phase::solid;
+    free_.push_back(static_cast<std::uint32_t>(i));
+  }
+  fit_fields();
+}
+
+/// Every field of the engine as long as the particles' arrays.
+void Engine::fit_fields() {
+  const std::size_t n = particles_.size();
+  for (auto* field :
+       {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_, &absorptivity_,
+        &loss_area_, &melt_.viscosity, &melt_.surface_tension, &melt_.recoil}) {
+    field->resize(n, 0.0);
+  }
+  mobile_.resize(n, 0);
+  built_at_.resize(n, Vector{});
+}
+
+/// Who keeps copies of whom, by places alone. @param at per particle; free entries may be missing.
+void Engine::note_peers(const std::vector<Vector>& at) {
+  const int own = halo_->ranks().rank();
+  std::vector<Halo::Peer> all(static_cast<std::size_t>(halo_->ranks().size()));
+  std::vector<int> near;
+  for (std::uint32_t i = 0; i < at.size(); ++i) {
+    if (particles_.home[i] == Home::here) {
+      decomposition_.near(at[i], copy_reach(), near);
+      for (const int r : near) {
+        if (r != own) {
+          all[static_cast<std::size_t>(r)].send.push_back(i);
+        }
+      }
+    } else if (particles_.home[i] == Home::elsewhere) {
+      all[static_cast<std::size_t>(decomposition_.owner(at[i]))].receive.push_back(i);
+    }
+  }
+  set_peers(std::move(all));
+}
+
+/// @param all an entry per rank.
+void Engine::set_peers(std::vector<Halo::Peer> all) {
+  std::vector<Halo::Peer> peers;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    Halo::Peer& peer = all[r];
+    if (peer.send.empty() && peer.receive.empty()) {
+      continue;
+    }
+    peer.rank = static_cast<int>(r);
+    for (auto* indices : {&peer.send, &peer.receive}) {
+      std::sort(indices->begin(), indices->end(),
+                [&](std::uint32_t a, std::uint32_t b) { return particles_.before(a, b); });
+    }
+    peers.push_back(std::move(peer));
+  }
+  halo_->set_peers(std::move(peers));
+}
+
+Traveller Engine::pack(std::uint32_t i) const {
+  const Particles& p = particles_;
+  Traveller t{};
+  t.identity = p.identity[i];
+  t.order = p.order[i];
+  t.position = p.position[i];
+  t.velocity = p.velocity[i];
+  t.mass = p.mass[i];
+  t.volume = p.volume[i];
+  t.density = p.density[i];
+  t.enthalpy = p.enthalpy[i];
+  t.concentration = p.concentration[i];
+  t.temperature = p.temperature[i];
+  t.liquid_fraction = p.liquid_fraction[i];
+  t.peak_temperature = p.peak_temperature[i];
+  t.melt_time = p.melt_time[i];
+  t.freeze_time = p.freeze_time[i];
+  t.cooling_rate = p.cooling_rate[i];
+  t.freeze_gradient = p.freeze_gradient[i];
+  t.listed_at = built_at_.empty() ? p.position[i] : built_at_[i];
+  if (flow_) {
+    t.viscosity = melt_.viscosity[i];
+    t.surface_tension = melt_.surface_tension[i];
+    t.recoil = melt_.recoil[i];
+    if (flow_->arranged()) {
+      t.flow = flow_->particle(i);
+    }
+  }
+  t.origin = p.origin[i];
+  t.rank = halo_->ranks().rank();
+  t.phase = p.phase[i];
+  t.melted = p.melted[i];
+  t.mobile = mobile_[i];
+  return t;
+}
+
+void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
+  t.write(particles_, i);
+  particles_.home[i] = home;
+  mobile_[i] = t.mobile;
+  built_at_[i] = t.listed_at;
+  melt_.viscosity[i] = t.viscosity;
+  melt_.surface_tension[i] = t.surface_tension;
+  melt_.recoil[i] = t.recoil;
+}
+
+/// What a particle costs in a step, s, by how long the parts of the steps since the last balance
+/// have taken on all ranks together.
+std::vector<double> Engine::costs() {
+  std::vector<std::uint8_t> heated(particles_.size(), 0), flows(particles_.size(), 0);
+  for (const std::uint32_t i : heat_active_) {
+    heated[i] = 1;
+  }
+  for (const auto* members : {&flow_->liquid(), &flow_->wall()}) {
+    for (const std::uint32_t i : *members) {
+      flows[i] = 1;
+    }
+  }
+  std::array<std::uint64_t, 3> count{};
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::here) {
+      count[0] += 1;
+      count[1] += heated[i];
+      count[2] += flows[i];
+    }
+  }
+  const StepTimes &now = times_, &then = times_at_balance_;
+  std::array<ExactSum, 3> seconds;
+  seconds[0].add(now.surface - then.surface + now.state - then.state);
+  seconds[1].add(now.heat - then.heat + now.species - then.species);
+  seconds[2].add(now.flow - then.flow + now.lists - then.lists);
+  times_at_balance_ = times_;
+  halo_->ranks().add(count);
+  std::array<double, 3> each{1, 5, 50};  // should nothing have been measured
+  for (std::size_t k = 0; k < 3; ++k) {
+    halo_->ranks().add(seconds[k]);
+    if (count[k] > 0 && seconds[k].total() > 0) {
+      each[k] = seconds[k].total() / static_cast<double>(count[k]);
+    }
+  }
+  std::vector<double> result;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::here) {
+      result.push_back(each[0] + (heated[i] != 0 ? each[1] : 0) + (flows[i] != 0 ? each[2] : 0));
+    }
+  }
+  return result;
+}
+
+/// New boxes of equal cost, new owners, new copies, and everything in space-filling order.
+void Engine::divide_anew() {
+  const Ranks& ranks = halo_->ranks();
+  Vector lower;
+  lower.fill(std::numeric_limits<double>::infinity());
+  std::vector<Vector> places;
+  std::vector<Traveller> own;
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::here) {
+      own.push_back(pack(i));
+      places.push_back(particles_.position[i]);
+      for (std::size_t d = 0; d < 3; ++d) {
+        lower[d] = std::min(lower[d], particles_.position[i][d]);
+      }
+    }
+  }
+  ranks.smallest(lower);
+  imbalance_ = decomposition_.balance(places, costs());
+  const auto size = static_cast<std::size_t>(ranks.size());
+  std::vector<std::vector<Traveller>> to(size), copies(size);
+  for (const Traveller& t : own) {
+    to[static_cast<std::size_t>(decomposition_.owner(t.position))].push_back(t);
+  }
+  own = ranks.exchange(to);
+  std::vector<int> near;
+  for (const Traveller& t : own) {
+    decomposition_.near(t.position, copy_reach(), near);
+    for (const int r : near) {
+      if (r != ranks.rank()) {
+        copies[static_cast<std::size_t>(r)].push_back(t);
+      }
+    }
+  }
+  const std::vector<Traveller> others = ranks.exchange(copies);
+  const std::size_t n = own.size() + others.size();
+  particles_.each_array([&](auto& values) { values.assign(n, {}); });
+  free_.clear();
+  fit_fields();
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const bool here = i < own.size();
+    unpack(i, here ? own[i] : others[i - own.size()], here ? Home::here : Home::elsewhere);
+  }
+  sort_in_space(particles_, 3 * kernel_.smoothing_length, lower);
+  note_peers(particles_.position);
+  add_free_slots();
+}
+
+std::uint32_t Engine::free_slot() {
+  if (free_.empty()) {
+    add_free_slots();
+    slots_added_ = true;
+  }
+  const std::uint32_t i = free_.back();
+  free_.pop_back();
+  return i;
+}
+
+/// Who moves, or did when the lists were last made, goes to the rank in whose box it now is, and
+/// its copies to those nearby. All others stand where they stood.
+/// @param before mobile_ when the lists were last made, where mobile_ is what it is now.
+/// @returns the entries that have come into use or out of it.
+Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before) {
+  const Ranks& ranks = halo_->ranks();
+  const auto size = static_cast<std::size_t>(ranks.size());
+  const auto unsettled = [&](std::uint32_t i) { return before[i] != 0 || mobile_[i] != 0; };
+  Moved moved;
+  std::vector<Halo::Peer> peers(size);
+  for (const Halo::Peer& old : halo_->peers()) {
+    Halo::Peer& kept = peers[static_cast<std::size_t>(old.rank)];
+    const auto settled = [&](std::uint32_t i) { return !unsettled(i); };
+    std::copy_if(old.send.begin(), old.send.end(), std::back_inserter(kept.send), settled);
+    std::copy_if(old.receive.begin(), old.receive.end(), std::back_inserter(kept.receive), settled);
+  }
+  std::vector<std::uint32_t> stays, freed;
+  std::vector<std::vector<Traveller>> to(size);
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::nowhere || !unsettled(i)) {
+      continue;
+    }
+    if (particles_.home[i] == Home::here) {
+      const int owner = decomposition_.owner(particles_.position[i]);
+      if (owner == ranks.rank()) {
+        stays.push_back(i);
+        continue;
+      }
+      to[static_cast<std::size_t>(owner)].push_back(pack(i));
+    }
+    particles_.home[i] = Home::nowhere;
+    particles_.phase[i] = Phase::solid;
+    mobile_[i] = 0;
+    freed.push_back(i);
+  }
+  free_.insert(free_.end(), freed.rbegin(), freed.rend());
+  moved.entries = freed;
+  const auto settle = [&](const Traveller& t, Home home) {
+    const std::uint32_t i = free_slot();
+    unpack(i, t, home);
+    flow_->fit(particles_.size());
+    flow_->set_particle(i, t.flow);
+    moved.entries.push_back(i);
+    moved.arrived.push_back(i);
+    return i;
+  };
+  for (const Traveller& t : ranks.exchange(to)) {
+    stays.push_back(settle(t, Home::here));
+  }
+  std::vector<int> near;
+  std::vector<std::vector<Traveller>> copies(size);
+  for (const std::uint32_t i : stays) {
+    decomposition_.near(particles_.position[i], copy_reach(), near);
+    for (const int r : near) {
+      if (r != ranks.rank()) {
+        copies[static_cast<std::size_t>(r)].push_back(pack(i));
+        peers[static_cast<std::size_t>(r)].send.push_back(i);
+      }
+    }
+  }
+  for (const Traveller& t : ranks.exchange(copies)) {
+    peers[static_cast<std::size_t>(t.rank)].receive.push_back(settle(t, Home::elsewhere));
+  }
+  set_peers(std::move(peers));
+  return moved;
+}
+
+/// Brings what a thermal step changes to the copies.
+void Engine::update_copies() {
+  halo_->exchange(
+      Halo::everybody, 2,
+      [&](std::uint32_t i, double* out) {
+        out[0] = particles_.enthalpy[i];
+        out[1] = particles_.concentration[i];
+      },
+      [&](std::uint32_t i, const double* in) {
+        particles_.enthalpy[i] = in[0];
+        particles_.concentration[i] = in[1];
+        refresh(i);
+      });
+}
+
+std::vector<Traveller> Engine::gather(const std::vector<std::uint8_t>& chosen) const {
+  std::vector<Traveller> own;
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::here && (chosen.empty() || chosen[i] != 0)) {
+      own.push_back(pack(i));
+    }
+  }
+  std::vector<Traveller> all = ranks().to_root(own);
+  std::sort(all.begin(), all.end(), [](const Traveller& a, const Traveller& b) {
+    return a.order != b.order ? a.order < b.order : a.identity < b.identity;
+  });
+  return all;
+}
+
+Particles Engine::collect(const std::vector<std::uint8_t>& chosen, double touch) const {
+  const NeighbourList& list = neighbours_.list();
+  std::vector<std::uint8_t> wanted = chosen;
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    if (chosen[i] == 0 || particles_.home[i] != Home::here) {
+      continue;
+    }
+    const Vector& a = particles_.position[i];
+    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+      const std::uint32_t j = list.index[k];
+      if (j < particles_.size() && wanted[j] == 0) {
+        const Vector& b = particles_.position[j];
+        const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+        wanted[j] = x * x + y * y + z * z < touch * touch ? 1 : 0;
+      }
+    }
+  }
+  // Who finds that a copy is wanted tells the owner.
+  halo_->give_back(
+      Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = wanted[i]; },
+      [&](std::uint32_t i, const double* in) { wanted[i] |= *in > 0 ? 1 : 0; });
+  Particles found;
+  found.dimensions = particles_.dimensions;
+  found.spacing = particles_.spacing;
+  if (ranks().alone()) {
+    std::vector<std::uint32_t> kept;
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+      if (wanted[i] != 0) {
+        kept.push_back(i);
+      }
+    }
+    particles_.each_array(found, [&](const auto& from, auto& to) {
+      to.reserve(kept.size());
+      for (const std::uint32_t i : kept) {
+        to.push_back(from[i]);
+      }
+    });
+    return found;
+  }
+  const std::vector<Traveller> all = gather(wanted);
+  found.each_array([&](auto& values) { values.resize(all.size()); });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].write(found, i);
+    found.home[i] = Home::here;
+  }
+  return found;
+}
+
+}  // namespace meltproof::solver
