@@ -19,7 +19,7 @@ from pathlib import Path
 from statistics import median
 from textwrap import wrap
 
-KEYS = {"key", "unit", "how", "at_least", "at_most", "rate", "scale", "per_counter", "over", "pending"}
+KEYS = {"key", "unit", "how", "at_least", "at_most", "rate", "scale", "per_counter", "over", "counter", "pending"}
 
 
 class BadInput(Exception):
@@ -83,6 +83,8 @@ class Parts:
         other = self.benchmarks.get(row["over"]) if "over" in row else None
         if not runs or ("over" in row and not other):
             return None
+        if "counter" in row:
+            return [run[row["counter"]] for run in runs]
         values = [run["items_per_second"] * row.get("scale", 1) for run in runs]
         if "per_counter" in row:
             values = [value / run[row["per_counter"]] for value, run in zip(values, runs)]

@@ -62,7 +62,7 @@ template <class T>
   const T dx = own.x - other.x, dy = own.y - other.y, dz = own.z - other.z;
   const T r2 = dx * dx + dy * dy + dz * dz;
   // The floor only keeps 0/0 from arising where two particles meet.
-  const T r = square_root(larger(r2, T(1e-40)));
+  const T r = square_root(larger(r2, T(1e-30)));
   const T slope = kernel.slope(r), slope_over_r = slope / r;
   const T factor = r * slope / (r2 + kernel.regularisation);
   const T approach = dx * (own.vx - other.vx) + dy * (own.vy - other.vy) + dz * (own.vz - other.vz);

@@ -8,8 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "solver/bench/figure.hpp"
 #include "solver/bench/pair_block.hpp"
+#include "solver/bench/single_loop.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -47,6 +49,39 @@ TEST(PairLoop, LanesAndScalarsAgreeToRoundOff) {
     // A hundred summands, each rounded to 1e-16.
     EXPECT_LT(off[k], 1e-13 * largest[k]) << k;
   }
+}
+
+// Single precision has 24 bits: 6e-8 of each summand. Places in fixed point keep that wherever the
+// block lies and however far its particles are from its middle.
+TEST(PairLoop, SinglePrecisionDiffersByItsOwnRoundOffOnly) {
+  PairBlock block = make_pair_block(14);
+  const std::vector<PairRates> exact = scalar_rates(block);
+  std::vector<PairRates> rates(block.size());
+  five_terms_single(to_single(block), rates);
+  const Deviation near = deviation(rates, exact);
+  EXPECT_GT(near.worst, 0);
+  EXPECT_LT(near.worst, 2e-6) << near.term;
+  // As far off as a track is long: double precision itself then has 3e-14 of a spacing.
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    block.records[i].x += 1e-3;
+  }
+  five_terms_single(to_single(block), rates);
+  EXPECT_LT(deviation(rates, exact).worst, 2e-6);
+  block.records.front().x -= 1;
+  EXPECT_THROW(to_single(block), InputError);
+}
+
+// A difference that passes over the end of the range comes out as if there were none.
+TEST(FixedPoint, DifferencesAreExactAndWrapAround) {
+  constexpr double step = 0x1p-22;
+  const auto difference = [&](double a, double b) {
+    const SingleLane::Simd other(fixed_point(b, step));
+    return static_cast<double>(
+        fixed_difference(fixed_point(a, step), SingleLane(other), step).value()[0]);
+  };
+  EXPECT_EQ(difference(400.5, 400.25), 0.25);
+  EXPECT_EQ(difference(-300, -301.5), 1.5);
+  EXPECT_EQ(difference(511, -511), -2);
 }
 
 // What the pairs exchange is antisymmetric, so momentum and heat of the block stay what they are.

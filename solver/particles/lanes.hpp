@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include <experimental/simd>
 
@@ -54,48 +55,35 @@ template <class Record>
 
 namespace lanes_detail {
 
-/// As many doubles as a lane holds, as the compiler knows them: it can shuffle them.
-template <std::size_t Count>
+/// `Count` numbers as the compiler knows them: it can shuffle them.
+template <class Number, std::size_t Count>
 struct VectorOf {
-  using Type [[gnu::vector_size(sizeof(double) * Count)]] = double;
+  using Type [[gnu::vector_size(sizeof(Number) * Count)]] = Number;
 };
-template <std::size_t Count>
-using Row = typename VectorOf<Count>::Type;
+template <class Number, std::size_t Count>
+using Row = typename VectorOf<Number, Count>::Type;
 
-/// Rows become columns.
-template <std::size_t Count>
-[[gnu::always_inline]] inline void transpose(std::array<Row<Count>, Count>& row) {
-  if constexpr (Count == 8) {
-    std::array<Row<Count>, 8> pair, four;
-    for (std::size_t i = 0; i < 8; i += 2) {
-      pair[i] = __builtin_shufflevector(row[i], row[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-      pair[i + 1] = __builtin_shufflevector(row[i], row[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-    for (std::size_t i : {0, 1, 4, 5}) {
-      four[i] = __builtin_shufflevector(pair[i], pair[i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      four[i + 2] = __builtin_shufflevector(pair[i], pair[i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-    for (std::size_t i = 0; i < 4; ++i) {
-      row[i] = __builtin_shufflevector(four[i], four[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-      row[i + 4] = __builtin_shufflevector(four[i], four[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-    }
-  } else if constexpr (Count == 4) {
-    std::array<Row<Count>, 4> pair;
-    for (std::size_t i = 0; i < 4; i += 2) {
-      pair[i] = __builtin_shufflevector(row[i], row[i + 1], 0, 4, 2, 6);
-      pair[i + 1] = __builtin_shufflevector(row[i], row[i + 1], 1, 5, 3, 7);
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      row[i] = __builtin_shufflevector(pair[i], pair[i + 2], 0, 1, 4, 5);
-      row[i + 2] = __builtin_shufflevector(pair[i], pair[i + 2], 2, 3, 6, 7);
-    }
-  } else {
-    const std::array<Row<Count>, Count> old = row;
+/// Exchanges the off-diagonal blocks of side `Step` between two rows that are `Step` apart.
+template <std::size_t Step, class Vector, std::size_t... Column>
+[[gnu::always_inline]] inline void exchange(Vector& a, Vector& b, std::index_sequence<Column...>) {
+  constexpr std::size_t other = sizeof...(Column);  // where b's numbers begin
+  const Vector upper =
+      __builtin_shufflevector(a, b, ((Column & Step) != 0 ? other + Column - Step : Column)...);
+  b = __builtin_shufflevector(a, b, ((Column & Step) != 0 ? other + Column : Column + Step)...);
+  a = upper;
+}
+
+/// Rows become columns: blocks of one, two, four, ... change places. (Eklundh 1972)
+template <std::size_t Step = 1, class Number, std::size_t Count>
+[[gnu::always_inline]] inline void transpose(Number (&row)[Count]) {
+  if constexpr (Step < Count) {
+#pragma GCC unroll 16
     for (std::size_t i = 0; i < Count; ++i) {
-      for (std::size_t k = 0; k < Count; ++k) {
-        row[i][k] = old[k][i];
+      if ((i & Step) == 0) {
+        exchange<Step>(row[i], row[i + Step], std::make_index_sequence<Count>{});
       }
     }
+    transpose<2 * Step>(row);
   }
 }
 
@@ -109,17 +97,18 @@ template <template <class> class Fields>
 [[gnu::always_inline]] inline Fields<Lane> gather_records(const Fields<double>* records,
                                                           const std::uint32_t* index) {
   constexpr std::size_t count = sizeof(Fields<double>) / sizeof(double);
-  static_assert(count % lane_count == 0 && sizeof(Fields<Lane>) == lane_count * sizeof(Fields<double>),
-                "a record is filled up to eight doubles or a multiple");
-  using Row = lanes_detail::Row<lane_count>;
+  static_assert(
+      count % lane_count == 0 && sizeof(Fields<Lane>) == lane_count * sizeof(Fields<double>),
+      "a record is filled up to eight doubles or a multiple");
+  using Row = lanes_detail::Row<double, lane_count>;
   std::array<Row, count> columns;
   for (std::size_t block = 0; block < count; block += lane_count) {
-    std::array<Row, lane_count> rows;
+    Row rows[lane_count];
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
       const char* from = reinterpret_cast<const char*>(records + index[lane]);
       std::memcpy(&rows[lane], from + block * sizeof(double), sizeof(rows[lane]));
     }
-    lanes_detail::transpose<lane_count>(rows);
+    lanes_detail::transpose(rows);
     for (std::size_t field = 0; field < lane_count; ++field) {
       columns[block + field] = rows[field];
     }
