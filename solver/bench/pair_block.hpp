@@ -13,7 +13,7 @@ namespace meltproof::solver {
 struct PairBlock {
   double spacing = 0;                       ///< m
   QuinticSpline kernel;                     ///< h is the spacing
-  NeighbourList list;                       ///< some 109 neighbours each, fewer at the faces
+  NeighbourList list;                       ///< some 108 neighbours each, fewer at the faces
   std::vector<PairFields<double>> records;  ///< particles, then the void
   std::size_t size() const { return records.size() - 1; }
 };

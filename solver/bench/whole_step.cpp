@@ -17,10 +17,11 @@ double seconds_since(std::chrono::steady_clock::time_point begun) {
 /// An engine that is timed window by window.
 struct Timed {
   Engine engine;
-  std::vector<double> seconds;       ///< per window, with the share of a full sort that falls to it
-  std::vector<double> steps;         ///< acoustic, per window
-  std::vector<double> melt_steps;    ///< acoustic steps times liquid particles, per window
-  std::vector<double> flow_seconds;  ///< of those in the passes of the flow
+  std::vector<double> seconds;  ///< per window, with the share of a full sort that falls to it
+  std::vector<double> steps;    ///< acoustic, per window
+  std::vector<double> thermal_steps;  ///< per window
+  std::vector<double> melt_steps;     ///< acoustic steps times liquid particles, per window
+  std::vector<double> flow_seconds;   ///< of those in the passes of the flow
   Timings before;
 
   Timed(EngineState state, const DevelopedPool& pool, const Model& model)
@@ -28,7 +29,8 @@ struct Timed {
         before(step_timings(engine)) {}
 
   void advance(double window, double seconds_per_list_build) {
-    const std::size_t acoustic = engine.flow_steps(), builds = engine.list_builds();
+    const std::size_t acoustic = engine.flow_steps(), thermal = engine.steps(),
+                      builds = engine.list_builds();
     const auto melt = engine.flow().limiters().particle_steps;
     const double until = engine.time() + window, flow = engine.times().flow;
     const auto begun = std::chrono::steady_clock::now();
@@ -38,6 +40,7 @@ struct Timed {
     seconds.push_back(seconds_since(begun) +
                       static_cast<double>(engine.list_builds() - builds) * seconds_per_list_build);
     steps.push_back(static_cast<double>(engine.flow_steps() - acoustic));
+    thermal_steps.push_back(static_cast<double>(engine.steps() - thermal));
     melt_steps.push_back(static_cast<double>(engine.flow().limiters().particle_steps - melt));
     flow_seconds.push_back(engine.times().flow - flow);
   }
@@ -52,7 +55,10 @@ struct Timed {
     for (std::size_t p = 0; p < now.size(); ++p) {
       shares[now[p].first] = (now[p].second - before[p].second) / total;
     }
-    return {{"seconds", seconds}, {"acoustic_steps", steps}, {"share_of_time", shares}};
+    return {{"seconds", seconds},
+            {"acoustic_steps", steps},
+            {"thermal_steps", thermal_steps},
+            {"share_of_time", shares}};
   }
 };
 
