@@ -40,6 +40,7 @@ help:
 	@echo '  make figures                  only the figures'
 	@echo '  make report                   only the report (makes what it is missing)'
 	@echo '  make studies                  runs that differ in one number: resolution, numerical choices, physics'
+	@echo '  make bench                    how fast it is and what memory it needs: reports/bench.json, some minutes'
 	@echo '  make clean                    removes everything generated: build/ and what reports/ holds'
 	@echo
 	@echo '  PROFILE=smoke|desk|paper      how fine: minutes in CI; the default; a cluster  (now $(PROFILE))'
@@ -57,6 +58,7 @@ include pipelines/studies.mk
 include pipelines/validate.mk
 include pipelines/report.mk
 include pipelines/recording.mk
+include pipelines/bench.mk
 
 .PHONY: test
 test: packages build/release/build.ninja

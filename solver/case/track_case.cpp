@@ -206,6 +206,20 @@ Input declare(TrackCase& t) {
   return Input(std::move(root));
 }
 
+Mixture read_mixture(const TrackCase& t) {
+  const Form form = t.form == "as_printed" ? Form::as_printed : Form::repaired;
+  Material base = read_material(t.base, form);
+  if (t.absorptivity >= 0) {
+    base.absorptivity = t.absorptivity;
+  }
+  Material additive = read_material(t.additive, form);
+  if (t.density == "own") {
+    base.density = base.real_density;
+    additive.density = additive.real_density;
+  }
+  return {base, additive};
+}
+
 std::vector<std::string> warnings(const TrackCase& t, const Mixture& mixture) {
   std::vector<std::string> result = flow_warnings(t.flow, mixture);
   if (t.beam_radius < 2 * t.spacing) {

@@ -71,6 +71,9 @@ struct Discretisation {
 /// unresolved.
 Discretisation discretise(const TrackCase& track, const Mixture& mixture);
 
+/// Plate and additive as the case's property tables have them. @throws InputError as read_material().
+Mixture read_mixture(const TrackCase& track);
+
 /// Sentences about what the case cannot resolve well; empty if nothing is wrong.
 /// @throws InputError where it could not be stable, with the number that would do.
 std::vector<std::string> warnings(const TrackCase& track, const Mixture& mixture);

@@ -24,20 +24,6 @@
 namespace meltproof::solver {
 namespace {
 
-Mixture read_mixture(const TrackCase& t) {
-  const Form form = t.form == "as_printed" ? Form::as_printed : Form::repaired;
-  Material base = read_material(t.base, form);
-  if (t.absorptivity >= 0) {
-    base.absorptivity = t.absorptivity;
-  }
-  Material additive = read_material(t.additive, form);
-  if (t.density == "own") {
-    base.density = base.real_density;
-    additive.density = additive.real_density;
-  }
-  return {base, additive};
-}
-
 void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engine,
                  const Discretisation& made) {
   writer.attribute("title", t.title);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -64,6 +65,35 @@ TEST(QuinticSpline, SlopeIsTheDerivativeOfTheValue) {
                 1e-9);
   }
   EXPECT_EQ(kernel.value(4.0), 0);
+}
+
+namespace {
+
+template <class T>
+struct alignas(64) TwoLines {
+  T field[16];
+};
+
+}  // namespace
+
+// Every field of every record differs, so that one in the wrong place shows.
+TEST(Lanes, RecordsArriveFieldByField) {
+  std::vector<TwoLines<double>> records(20);
+  for (std::size_t record = 0; record < records.size(); ++record) {
+    for (std::size_t field = 0; field < 16; ++field) {
+      records[record].field[field] =
+          100.0 * static_cast<double>(record) + static_cast<double>(field);
+    }
+  }
+  const std::array<std::uint32_t, 8> index{7, 0, 19, 3, 3, 12, 1, 5};
+  for (std::size_t from = 0; from + lane_count <= index.size(); from += lane_count) {
+    const TwoLines<Lane> found = gather_records(records.data(), &index[from]);
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      for (std::size_t field = 0; field < 16; ++field) {
+        EXPECT_EQ(found.field[field][lane], records[index[from + lane]].field[field]);
+      }
+    }
+  }
 }
 
 TEST(QuinticSpline, LanesAgreeWithScalarsToTheLastBit) {

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`make bench` writes what it promises: every figure, with what is asked, or the sentence why there is none."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
+# A pool of a few particles, a second of work: for plumbing only.
+TINY = ["solver/cases/track_0wt.toml", "--set", "powder.surface=bare", "--set", "spacing=14 um",
+        "--set", "laser.exposure=100 us", "--set", "domain.depth=98 um", "--set", "domain.width=196 um",
+        "--set", "domain.before=80 um", "--set", "domain.behind=80 um"]
+MEASURED = ["pair_loop_Mupd_per_core_f64", "pair_loop_simd_over_scalar", "whole_step_Mupd_per_core",
+            "active_set_speedup", "camera_real_time_factor", "bytes_per_particle"]
+
+
+def call(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, cwd=ROOT)
+
+
+def bench(*arguments):
+    return call(BIN / "meltproof-bench", *arguments)
+
+
+def join(*arguments):
+    return call(sys.executable, ROOT / "pipelines/bench.py", ROOT / "pipelines/bench.toml", *arguments)
+
+
+def benchmark(name, rates, **counters):
+    return [{"name": name, "run_type": "iteration", "repetition_index": k, "items_per_second": rate,
+             "real_time": 1.0, "cpu_time": 1.0, "time_unit": "ms", **counters} for k, rate in enumerate(rates)]
+
+
+class Bench(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.root = Path(cls.folder.name)
+        cls.step = cls.root / "step.json"
+        done = bench(*TINY, "--until", "80 us", "--window", "1 us", "--repeats", "2", "--output", cls.step)
+        assert done.returncode == 0, done.stderr
+        cls.pairs = cls.root / "pairs.json"
+        # Repeats lie in the file in the order in which they were drawn.
+        cls.pairs.write_text(json.dumps({"benchmarks": [
+            *reversed(benchmark("pair_loop/lanes", [2e6, 4e6, 3e6])),
+            *benchmark("pair_loop/scalar", [1e6, 1e6, 0.5e6]),
+            *benchmark("extraction/memory/real_time", [19525.0, 97625.0], frame_rate=9762.5)]}))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_whole_steps_are_written_with_their_spread(self):
+        result = json.loads(self.step.read_text())
+        for key in ("whole_step_Mupd_per_core", "active_set_speedup", "flow_Mupd_per_core"):
+            made = result["figures"][key]
+            self.assertEqual(len(made["repeats"]), 2)
+            self.assertGreater(made["min"], 0)
+            self.assertLessEqual(made["min"], made["median"])
+            self.assertLessEqual(made["median"], made["max"])
+            self.assertTrue(made["unit"] and made["how"])
+        step = result["details"]["step"]
+        self.assertGreater(step["liquid_particles"], 0)
+        for engine in ("as_tracks_run", "nothing_skipped"):
+            self.assertAlmostEqual(sum(step[engine]["share_of_time"].values()), 1, 9)
+        self.assertEqual(result["provenance"]["program"], "meltproof-bench")
+
+    def test_parts_are_joined_and_what_does_not_exist_is_said_to_be_pending(self):
+        output = self.root / "bench.json"
+        done = join(self.step, self.pairs, "--output", output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = json.loads(output.read_text())
+        figures = result["figures"]
+        for key in MEASURED:
+            self.assertEqual(figures[key]["value"], figures[key]["median"])
+            self.assertIsInstance(figures[key]["met"], bool)
+            self.assertTrue(figures[key]["unit"] and figures[key]["how"], key)
+        self.assertIsNone(figures["ranks_2_over_1"]["value"])
+        self.assertIn("runs on several ranks do not exist yet", figures["ranks_2_over_1"]["pending"])
+        self.assertEqual(figures["pair_loop_Mupd_per_core_f64"]["repeats"], [2, 4, 3])
+        self.assertEqual(figures["pair_loop_simd_over_scalar"]["repeats"], [2, 4, 6])
+        self.assertEqual(figures["camera_real_time_factor"]["max"], 10)
+        self.assertIn("pending: runs on several ranks", done.stdout)
+        self.assertTrue(result["revision"] and result["machine"]["processor"] and result["machine"]["lanes_f64"])
+        self.assertFalse(list(self.root.glob("*.tmp*")))
+
+    def test_mistakes_are_sentences_and_nothing_is_written(self):
+        output = self.root / "none.json"
+        for arguments, sentence in (
+                (["nowhere.toml", "--output", output], "nowhere.toml cannot be opened"),
+                ([*TINY, "--output", output, "--stage", "flight"], "--stage flight: there is no such stage"),
+                ([*TINY, "--output", output, "--until", "3 mm"], "mm"),
+                ([*TINY, "--output", output, "--until", "99 us"], "are more than the beam's 100 us"),
+                ([*TINY, "--output", output, "--until", "0 us"], "expected a time above zero"),
+                ([*TINY, "--output", output, "--repeats", "0"], "--repeats"),
+                ([*TINY], "--output is missing")):
+            done = bench(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn(sentence, done.stdout + done.stderr)
+        for arguments, sentence in (
+                ([self.root / "gone.json", "--output", output], "cannot be read"),
+                (["README.md", "--output", output], "is no JSON")):
+            done = join(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn(sentence, done.stderr)
+        self.assertFalse(output.exists())
+
+    def test_help_teaches(self):
+        said = bench("--help").stdout
+        for word in ("Example:", "Stages:", "--until", "Exit status"):
+            self.assertIn(word, said)
+
+
+if __name__ == "__main__":
+    unittest.main()
