@@ -46,7 +46,9 @@ void Halo::swap_buffers() {
       numbers_ += out_[p].size();
     }
   }
+  const double began = MPI_Wtime();
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  waited_ += MPI_Wtime() - began;
 }
 
 }  // namespace meltproof::solver

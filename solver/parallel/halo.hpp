@@ -47,7 +47,8 @@ class Halo {
     run(group, width, true, get, put);
   }
 
-  std::size_t messages() const { return messages_; }                             ///< sent so far
+  double waited() const { return waited_; }           ///< s, for other ranks so far
+  std::size_t messages() const { return messages_; }  ///< sent so far
   double megabytes() const { return 1e-6 * 8 * static_cast<double>(numbers_); }  ///< sent so far
 
  private:
@@ -80,6 +81,7 @@ class Halo {
   std::array<std::vector<Peer>, groups> plans_;  // as peers_, of the group only
   std::vector<std::vector<double>> out_, in_;    // per peer
   std::size_t messages_ = 0, numbers_ = 0;
+  double waited_ = 0;
 };
 
 }  // namespace meltproof::solver

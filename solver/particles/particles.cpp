@@ -69,13 +69,17 @@ void sort_in_space(Particles& particles, double cell_size) {
   sort_in_space(particles, cell_size, lower_corner(particles));
 }
 
+std::uint64_t place_in_space(const Vector& at, const Vector& lower, double cell_size) {
+  std::array<std::uint64_t, 3> cell{};
+  for (std::size_t d = 0; d < 3; ++d) {
+    cell[d] = static_cast<std::uint64_t>((at[d] - lower[d]) / cell_size);
+  }
+  return spread(cell[0]) | spread(cell[1]) << 1U | spread(cell[2]) << 2U;
+}
+
 void sort_in_space(Particles& particles, double cell_size, const Vector& lower) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    std::array<std::uint64_t, 3> cell{};
-    for (std::size_t d = 0; d < 3; ++d) {
-      cell[d] = static_cast<std::uint64_t>((particles.position[i][d] - lower[d]) / cell_size);
-    }
-    particles.order[i] = spread(cell[0]) | spread(cell[1]) << 1U | spread(cell[2]) << 2U;
+    particles.order[i] = place_in_space(particles.position[i], lower, cell_size);
   }
   std::vector<std::uint32_t> sorted(particles.size());
   std::iota(sorted.begin(), sorted.end(), 0U);

@@ -104,6 +104,8 @@ Vector lower_corner(const Particles& particles);
 /// order depends on the particles alone, neither on how they were made nor on threads. Sets
 /// Particles::order.
 void sort_in_space(Particles& particles, double cell_size);
+/// The place of a point in that order. @param lower corner from which cells are counted, m.
+std::uint64_t place_in_space(const Vector& at, const Vector& lower, double cell_size);
 /// The same with cells counted from `lower`, the corner of the particles of all ranks, m.
 void sort_in_space(Particles& particles, double cell_size, const Vector& lower);
 

@@ -3,6 +3,7 @@
 // then the melt flows through it in as many acoustic ones as that needs.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -105,7 +106,7 @@ class Engine {
   std::size_t list_builds() const { return list_builds_; }
   /// What limited the flow on all ranks so far; collective.
   LimiterCounts limiters() const;
-  /// Largest over mean cost of a rank when they were last divided anew, 1 if perfect.
+  /// Largest over mean cost of a rank when last looked at, 1 if perfect.
   double imbalance() const { return imbalance_; }
   std::size_t lost() const { return lost_; }  ///< particles that left the domain
   /// Gives the liquid particles a velocity and lets the flow see it; for the start of a case.
@@ -163,12 +164,14 @@ class Engine {
   double copy_reach() const;
   void check_ranks() const;
   std::vector<std::uint32_t> divide(const std::vector<Vector>& at);
-  void divide_anew();
+  void divide_anew(bool sort);
+  bool out_of_balance();
+  std::array<std::uint64_t, 3> workload() const;
+  std::array<double, 3> unit_costs();
   Moved move_between_ranks(const std::vector<std::uint8_t>& before);
   void update_copies();
   void note_peers(const std::vector<Vector>& at);
   void set_peers(std::vector<Halo::Peer> all);
-  std::vector<double> costs();
   Traveller pack(std::uint32_t i) const;
   void unpack(std::uint32_t i, const Traveller& traveller, Home home);
   void add_free_slots();
@@ -208,7 +211,10 @@ class Engine {
   StepTimes times_, times_at_balance_;
   std::vector<std::uint32_t> free_;  // entries without a particle
   bool slots_added_ = false;         // since the last rebuild
-  double imbalance_ = 1;
+  // Of the division among ranks; by clocks, so nothing that is computed depends on it.
+  double imbalance_ = 1, imbalance_after_division_ = 1, waited_at_balance_ = 0;
+  std::array<double, 3> costs_{};  // s, see unit_costs()
+  std::size_t rebuilds_since_division_ = 0;
 };
 
 }  // namespace meltproof::solver

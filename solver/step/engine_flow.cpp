@@ -233,10 +233,8 @@ void Engine::sort_particles() {
   if (ranks().alone()) {
     sort_in_space(particles_, 3 * kernel_.smoothing_length);
   } else {
-    divide_anew();
-    for (auto* field : {&heat_active_, &liquid_}) {
-      field->clear();
-    }
+    costs_ = unit_costs();
+    divide_anew(true);
   }
   builds_since_sort_ = 0;
 }
@@ -254,8 +252,13 @@ void Engine::rebuild_lists(bool everything) {
   }
   Moved moved;
   if (!everything && !ranks().alone()) {
-    moved = move_between_ranks(before);
-    everything = slots_added_;
+    if (out_of_balance()) {
+      divide_anew(false);
+      everything = true;
+    } else {
+      moved = move_between_ranks(before);
+      everything = slots_added_;
+    }
   }
   slots_added_ = false;
   ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <unordered_map>
 
 #include "base/error.hpp"
 #include "solver/step/engine.hpp"
@@ -203,9 +204,69 @@ void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
   melt_.recoil[i] = t.recoil;
 }
 
-/// What a particle costs in a step, s, by how long the parts of the steps since the last balance
-/// have taken on all ranks together.
-std::vector<double> Engine::costs() {
+/// What costs what on this rank: all particles, those that conduct, those that flow or bound it.
+std::array<std::uint64_t, 3> Engine::workload() const {
+  std::array<std::uint64_t, 3> count{};
+  count[0] = static_cast<std::uint64_t>(
+      std::count(particles_.home.begin(), particles_.home.end(), Home::here));
+  count[1] = heat_active_.size();
+  count[2] = flow_->liquid().size() + flow_->wall().size();
+  return count;
+}
+
+/// What one of each costs, s, by how long the parts of the steps since the last measurement took on
+/// all ranks together, but for the time that ranks waited for each other.
+std::array<double, 3> Engine::unit_costs() {
+  const StepTimes &now = times_, &then = times_at_balance_;
+  std::array<double, 3> spent{
+      now.surface - then.surface + now.state - then.state,
+      now.heat - then.heat + now.species - then.species,
+      now.flow - then.flow + now.lists - then.lists - (halo_->waited() - waited_at_balance_)};
+  times_at_balance_ = times_;
+  waited_at_balance_ = halo_->waited();
+  std::array<std::uint64_t, 3> count = workload();
+  ranks().add(count);
+  // Should nothing have been measured yet.
+  std::array<double, 3> each{1e-7, 5e-7, 5e-6};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ExactSum seconds;
+    seconds.add(std::max(0.0, spent[k]));
+    ranks().add(seconds);
+    if (count[k] > 0 && seconds.total() > 0) {
+      each[k] = seconds.total() / static_cast<double>(count[k]);
+    }
+  }
+  return each;
+}
+
+/// Whether the rank with the most work has so much more than the mean that new boxes pay. Looks at
+/// clocks, so it falls out otherwise in every run: nothing that is computed depends on it.
+bool Engine::out_of_balance() {
+  constexpr double tolerated = 1.15;
+  // A division costs about as much as so many rebuilds.
+  constexpr std::size_t pause = 24;
+  if (++rebuilds_since_division_ < pause) {
+    return false;
+  }
+  rebuilds_since_division_ = 0;
+  costs_ = unit_costs();
+  const std::array<std::uint64_t, 3> count = workload();
+  double own = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    own += costs_[k] * static_cast<double>(count[k]);
+  }
+  ExactSum total;
+  total.add(own);
+  ranks().add(total);
+  imbalance_ = ranks().largest(own) * ranks().size() / total.total();
+  // Where even the last division left as much, another one would, too.
+  return imbalance_ > std::max(tolerated, 1.05 * imbalance_after_division_);
+}
+
+/// New boxes of equal cost, new owners, new copies. @param sort also a new space-filling order.
+void Engine::divide_anew(bool sort) {
+  Vector lower;
+  lower.fill(std::numeric_limits<double>::infinity());
   std::vector<std::uint8_t> heated(particles_.size(), 0), flows(particles_.size(), 0);
   for (const std::uint32_t i : heat_active_) {
     heated[i] = 1;
@@ -215,82 +276,61 @@ std::vector<double> Engine::costs() {
       flows[i] = 1;
     }
   }
-  std::array<std::uint64_t, 3> count{};
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (particles_.home[i] == Home::here) {
-      count[0] += 1;
-      count[1] += heated[i];
-      count[2] += flows[i];
-    }
-  }
-  const StepTimes &now = times_, &then = times_at_balance_;
-  std::array<ExactSum, 3> seconds;
-  seconds[0].add(now.surface - then.surface + now.state - then.state);
-  seconds[1].add(now.heat - then.heat + now.species - then.species);
-  seconds[2].add(now.flow - then.flow + now.lists - then.lists);
-  times_at_balance_ = times_;
-  halo_->ranks().add(count);
-  std::array<double, 3> each{1, 5, 50};  // should nothing have been measured
-  for (std::size_t k = 0; k < 3; ++k) {
-    halo_->ranks().add(seconds[k]);
-    if (count[k] > 0 && seconds[k].total() > 0) {
-      each[k] = seconds[k].total() / static_cast<double>(count[k]);
-    }
-  }
-  std::vector<double> result;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (particles_.home[i] == Home::here) {
-      result.push_back(each[0] + (heated[i] != 0 ? each[1] : 0) + (flows[i] != 0 ? each[2] : 0));
-    }
-  }
-  return result;
-}
-
-/// New boxes of equal cost, new owners, new copies, and everything in space-filling order.
-void Engine::divide_anew() {
-  const Ranks& ranks = halo_->ranks();
-  Vector lower;
-  lower.fill(std::numeric_limits<double>::infinity());
   std::vector<Vector> places;
+  std::vector<double> weights;
   std::vector<Traveller> own;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (particles_.home[i] == Home::here) {
       own.push_back(pack(i));
       places.push_back(particles_.position[i]);
+      weights.push_back(costs_[0] + heated[i] * costs_[1] + flows[i] * costs_[2]);
       for (std::size_t d = 0; d < 3; ++d) {
         lower[d] = std::min(lower[d], particles_.position[i][d]);
       }
     }
   }
-  ranks.smallest(lower);
-  imbalance_ = decomposition_.balance(places, costs());
-  const auto size = static_cast<std::size_t>(ranks.size());
+  if (sort) {
+    ranks().smallest(lower);
+    for (Traveller& t : own) {
+      t.order = place_in_space(t.position, lower, 3 * kernel_.smoothing_length);
+    }
+  }
+  imbalance_after_division_ = decomposition_.balance(places, weights);
+  rebuilds_since_division_ = 0;
+  const auto size = static_cast<std::size_t>(ranks().size());
   std::vector<std::vector<Traveller>> to(size), copies(size);
   for (const Traveller& t : own) {
     to[static_cast<std::size_t>(decomposition_.owner(t.position))].push_back(t);
   }
-  own = ranks.exchange(to);
+  own = ranks().exchange(to);
+  for (Traveller& t : own) {
+    t.rank = ranks().rank();
+  }
   std::vector<int> near;
   for (const Traveller& t : own) {
     decomposition_.near(t.position, copy_reach(), near);
     for (const int r : near) {
-      if (r != ranks.rank()) {
+      if (r != ranks().rank()) {
         copies[static_cast<std::size_t>(r)].push_back(t);
       }
     }
   }
-  const std::vector<Traveller> others = ranks.exchange(copies);
-  const std::size_t n = own.size() + others.size();
-  particles_.each_array([&](auto& values) { values.assign(n, {}); });
+  const std::vector<Traveller> others = ranks().exchange(copies);
+  own.insert(own.end(), others.begin(), others.end());
+  std::sort(own.begin(), own.end(), comes_before);
+  particles_.each_array([&](auto& values) { values.assign(own.size(), {}); });
   free_.clear();
   fit_fields();
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const bool here = i < own.size();
-    unpack(i, here ? own[i] : others[i - own.size()], here ? Home::here : Home::elsewhere);
+  flow_->fit(own.size());
+  for (std::uint32_t i = 0; i < own.size(); ++i) {
+    unpack(i, own[i], own[i].rank == ranks().rank() ? Home::here : Home::elsewhere);
+    flow_->set_particle(i, own[i].flow);
   }
-  sort_in_space(particles_, 3 * kernel_.smoothing_length, lower);
   note_peers(particles_.position);
   add_free_slots();
+  for (auto* members : {&heat_active_, &liquid_}) {
+    members->clear();
+  }
 }
 
 std::uint32_t Engine::free_slot() {
@@ -319,7 +359,10 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     std::copy_if(old.send.begin(), old.send.end(), std::back_inserter(kept.send), settled);
     std::copy_if(old.receive.begin(), old.receive.end(), std::back_inserter(kept.receive), settled);
   }
-  std::vector<std::uint32_t> stays, freed;
+  std::vector<std::uint32_t> stays;
+  // Who leaves mostly comes back as a copy, or with its next one: then it gets its entry again, so
+  // that indices keep following the order of sums.
+  std::unordered_map<std::int64_t, std::uint32_t> left;
   std::vector<std::vector<Traveller>> to(size);
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (particles_.home[i] == Home::nowhere || !unsettled(i)) {
@@ -336,12 +379,15 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     particles_.home[i] = Home::nowhere;
     particles_.phase[i] = Phase::solid;
     mobile_[i] = 0;
-    freed.push_back(i);
+    left.emplace(particles_.identity[i], i);
+    moved.entries.push_back(i);
   }
-  free_.insert(free_.end(), freed.rbegin(), freed.rend());
-  moved.entries = freed;
   const auto settle = [&](const Traveller& t, Home home) {
-    const std::uint32_t i = free_slot();
+    const auto known = left.find(t.identity);
+    const std::uint32_t i = known != left.end() ? known->second : free_slot();
+    if (known != left.end()) {
+      left.erase(known);
+    }
     unpack(i, t, home);
     flow_->fit(particles_.size());
     flow_->set_particle(i, t.flow);
@@ -365,6 +411,11 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
   }
   for (const Traveller& t : ranks.exchange(copies)) {
     peers[static_cast<std::size_t>(t.rank)].receive.push_back(settle(t, Home::elsewhere));
+  }
+  for (const std::uint32_t i : moved.entries) {
+    if (particles_.home[i] == Home::nowhere) {
+      free_.push_back(i);
+    }
   }
   set_peers(std::move(peers));
   return moved;
@@ -393,9 +444,7 @@ std::vector<Traveller> Engine::gather(const std::vector<std::uint8_t>& chosen) c
     }
   }
   std::vector<Traveller> all = ranks().to_root(own);
-  std::sort(all.begin(), all.end(), [](const Traveller& a, const Traveller& b) {
-    return a.order != b.order ? a.order < b.order : a.identity < b.identity;
-  });
+  std::sort(all.begin(), all.end(), comes_before);
   return all;
 }
 

@@ -47,4 +47,9 @@ struct alignas(8) Traveller {
   }
 };
 
+/// As Particles::before().
+inline bool comes_before(const Traveller& a, const Traveller& b) {
+  return a.order != b.order ? a.order < b.order : a.identity < b.identity;
+}
+
 }  // namespace meltproof::solver
