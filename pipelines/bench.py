@@ -19,6 +19,9 @@ from pathlib import Path
 from statistics import median
 from textwrap import wrap
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from bench_scaling import scaling, scaling_lines  # noqa: E402
+
 KEYS = {"key", "unit", "how", "at_least", "at_most", "rate", "scale", "per_counter", "over", "counter", "pending"}
 
 
@@ -126,6 +129,7 @@ def joined(table, parts):
                     "load_average_1min": round(os.getloadavg()[0], 2),
                     "compiler": provenance.get("libraries", {}).get("compiler")},
         "figures": {row["key"]: figure(row, parts) for row in table},
+        "scaling": scaling(parts.details),
         "details": parts.details,
         "benchmarks": {name: [{key: run[key] for key in ("items_per_second", "real_time", "cpu_time", "time_unit")}
                               for run in runs] for name, runs in parts.benchmarks.items()},
@@ -163,6 +167,8 @@ def table_text(result):
         if shares := step.get(name, {}).get("share_of_time"):
             lines.append(f"time of a step, {title}: " + ", ".join(
                 f"{part} {100 * share:.0f} %" for part, share in sorted(shares.items(), key=lambda s: -s[1])))
+    if result["scaling"]:
+        lines += scaling_lines(result["scaling"])
     machine = result["machine"]
     text = (f"{machine['processor']}, {machine['cores']} cores, {machine['lanes_f64']} doubles a lane, load "
             f"{machine['load_average_1min']} as it ended. What else the machine does slows all of it down: "

@@ -27,6 +27,8 @@ std::string about() {
       "Example: meltproof-bench solver/cases/track_0wt.toml --set powder.surface=bare --set "
       "spacing=\"14 um\" \\\n"
       "  --until \"150 us\" --output step.json\n"
+      "Under mpirun it times the ranks together against one of them alone:\n"
+      "mpirun -n 2 meltproof-bench ... --until \"60 us\" --output ranks.json\n"
       "A busy machine slows both down: believe the ratios of one run, and the spread.\n"
       "Stages:";
   for (const auto& stage : solver::bench_stages()) {
@@ -64,6 +66,8 @@ std::vector<solver::Stage> chosen(const std::vector<std::string>& names) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const solver::MpiSession session;
+  const solver::Ranks ranks = solver::Ranks::world();
   Program program("meltproof-bench", about());
   InputOptions options;
   options.add_to(program.app, "the track");
@@ -78,9 +82,15 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   program.app.add_option("--stage", stages, "only this stage; may be repeated");
-  return program.run(argc, argv, [&] {
+  if (!ranks.root()) {
+    program.hush();
+  }
+  const int status = program.run(argc, argv, [&] {
     solver::TrackCase track;
     Input input = solver::declare(track);
+    if (!ranks.root() && options.only_asks()) {
+      return ExitStatus::success;
+    }
     if (options.handle(input)) {
       return ExitStatus::success;
     }
@@ -103,23 +113,37 @@ int main(int argc, char** argv) {
     for (const auto& file : input.files()) {
       provenance.add_input(file);
     }
-    const solver::DevelopedPool pool = solver::develop_pool(track, developed);
     nlohmann::json result = {{"lanes", solver::lane_count},
                              {"figures", nlohmann::json::object()},
                              {"details", nlohmann::json::object()}};
-    for (const auto& stage : selected) {
-      const solver::StageResult found = stage.run(pool, settings);
+    const auto keep = [&](const std::string& stage, const solver::StageResult& found) {
       for (const auto& figure : found.figures) {
         result["figures"][figure.key] = solver::figure_json(figure);
         if (!program.quiet()) {
           fmt::print("{}: {:.4g} {}\n", figure.key, solver::median(figure.repeats), figure.unit);
         }
       }
-      result["details"][stage.name] = found.details;
+      result["details"][stage] = found.details;
+    };
+    if (ranks.alone()) {
+      const solver::DevelopedPool pool = solver::develop_pool(track, developed);
+      for (const auto& stage : selected) {
+        keep(stage.name, stage.run(pool, settings));
+      }
+    } else {
+      keep(fmt::format("ranks_{}", ranks.size()),
+           solver::ranks_against_one(track, developed, settings, ranks));
+      if (!ranks.root()) {
+        return ExitStatus::success;
+      }
     }
     provenance.wall_time = provenance.elapsed();
     result["provenance"] = provenance.json();
     write_file(output, result.dump(2) + "\n");
     return ExitStatus::success;
   });
+  if (status != 0) {
+    session.give_up(status);
+  }
+  return status;
 }

@@ -49,4 +49,11 @@ struct NothingSkipped {
 };
 NothingSkipped skip_nothing(const DevelopedPool& pool);
 
+/// **Several ranks against one**: the same simulated time by all ranks together and by the root
+/// alone while the others wait, in turns, from the same state. Collective; the root's result
+/// counts. The key of the figure is ranks_<number>_over_1.
+/// @param until simulated time at which the pool counts as developed, s, reached on all ranks.
+StageResult ranks_against_one(const TrackCase& track, double until, const BenchSettings& settings,
+                              const Ranks& ranks);
+
 }  // namespace meltproof::solver

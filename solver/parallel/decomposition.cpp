@@ -12,7 +12,7 @@ namespace {
 /// What Zoltan asks for, by callbacks.
 struct Points {
   std::span<const Vector> positions;
-  std::span<const double> weights;
+  std::span<const Decomposition::Cost> costs;
 };
 
 int count_points(void* data, int* error) {
@@ -26,7 +26,9 @@ void list_points(void* data, int, int, ZOLTAN_ID_PTR global, ZOLTAN_ID_PTR local
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     // Numbers of this rank only: nobody asks Zoltan who goes where.
     global[i] = local[i] = static_cast<ZOLTAN_ID_TYPE>(i);
-    weights[i] = static_cast<float>(points.weights[i]);
+    for (std::size_t k = 0; k < points.costs[i].size(); ++k) {
+      weights[3 * i + k] = static_cast<float>(points.costs[i][k]);
+    }
   }
   *error = ZOLTAN_OK;
 }
@@ -60,9 +62,10 @@ struct Decomposition::Zoltan {
     }
     handle = Zoltan_Create(MPI_COMM_WORLD);
     const std::vector<std::pair<const char*, const char*>> settings{
-        {"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},           {"OBJ_WEIGHT_DIM", "1"},
+        {"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},           {"OBJ_WEIGHT_DIM", "3"},
         {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "1"},       {"RETURN_LISTS", "NONE"},
-        {"KEEP_CUTS", "1"},       {"RCB_RECTILINEAR_BLOCKS", "1"}};
+        {"KEEP_CUTS", "1"},       {"RCB_RECTILINEAR_BLOCKS", "1"},
+        {"RCB_MULTICRITERIA_NORM", "3"}};
     for (const auto& [name, value] : settings) {
       if (Zoltan_Set_Param(handle, name, value) != ZOLTAN_OK) {
         throw std::runtime_error(std::string("Zoltan does not know its parameter ") + name);
@@ -85,11 +88,11 @@ Decomposition::~Decomposition() = default;
 Decomposition::Decomposition(Decomposition&&) noexcept = default;
 Decomposition& Decomposition::operator=(Decomposition&&) noexcept = default;
 
-double Decomposition::balance(std::span<const Vector> positions, std::span<const double> weights) {
+double Decomposition::balance(std::span<const Vector> positions, std::span<const Cost> costs) {
   if (ranks_.alone()) {
     return 1;
   }
-  Points points{positions, weights};
+  Points points{positions, costs};
   Zoltan_Struct* z = zoltan_->handle;
   Zoltan_Set_Num_Obj_Fn(z, count_points, &points);
   Zoltan_Set_Obj_List_Fn(z, list_points, &points);
@@ -110,22 +113,33 @@ double Decomposition::balance(std::span<const Vector> positions, std::span<const
     throw std::runtime_error("Zoltan could not divide the particles among the ranks");
   }
   // Who owns a point is always asked of the cuts: then it cannot depend on who asked.
-  std::vector<double> cost(static_cast<std::size_t>(ranks_.size()), 0.0);
+  std::vector<std::vector<Cost>> to(static_cast<std::size_t>(ranks_.size()), {Cost{}});
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    cost[static_cast<std::size_t>(owner(positions[i]))] += weights[i];
+    Cost& cost = to[static_cast<std::size_t>(owner(positions[i]))][0];
+    for (std::size_t k = 0; k < cost.size(); ++k) {
+      cost[k] += costs[i][k];
+    }
   }
-  std::vector<std::vector<double>> to(cost.size());
-  for (std::size_t r = 0; r < cost.size(); ++r) {
-    to[r] = {cost[r]};
+  Cost own{};
+  for (const Cost& part : ranks_.exchange(to)) {
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      own[k] += part[k];
+    }
   }
-  double own = 0;
-  for (const double part : ranks_.exchange(to)) {
-    own += part;
-  }
+  return unevenness(ranks_, own);
+}
+
+double Decomposition::unevenness(const Ranks& ranks, const Cost& own) {
+  Cost most = own;
+  ranks.largest(most);
+  double taken = 0;
   ExactSum total;
-  total.add(own);
-  ranks_.add(total);
-  return total.total() > 0 ? ranks_.largest(own) * ranks_.size() / total.total() : 1;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    taken += most[k];
+    total.add(own[k]);
+  }
+  ranks.add(total);
+  return total.total() > 0 ? taken * ranks.size() / total.total() : 1;
 }
 
 int Decomposition::owner(const Vector& at) const {

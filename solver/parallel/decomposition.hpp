@@ -2,6 +2,7 @@
 // Which rank owns which part of space.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,10 +23,18 @@ class Decomposition {
   Decomposition(Decomposition&&) noexcept;
   Decomposition& operator=(Decomposition&&) noexcept;
 
+  /// What a particle costs in each part of a step, any unit. Ranks wait for each other between the
+  /// parts, so each part of its own is to be spread evenly.
+  using Cost = std::array<double, 3>;
+
   /// Makes new boxes, collectively. @param positions of particles of this rank, m, each particle on
-  /// one rank; @param weights their costs, any unit. @returns largest over mean cost of a rank.
+  /// one rank. @returns what a step takes over what it would with all parts spread evenly.
   /// @throws std::runtime_error if Zoltan could not.
-  double balance(std::span<const Vector> positions, std::span<const double> weights);
+  double balance(std::span<const Vector> positions, std::span<const Cost> costs);
+
+  /// What a step takes with ranks that wait for each other after each part, over what it would with
+  /// all parts spread evenly; collective. @param own what this rank has to do in each part.
+  static double unevenness(const Ranks& ranks, const Cost& own);
 
   /// The rank in whose box the point lies.
   int owner(const Vector& at) const;

@@ -110,6 +110,12 @@ void Ranks::largest(std::span<std::uint8_t> flags) const {
   }
 }
 
+void Ranks::meet() const {
+  if (!alone()) {
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+}
+
 std::vector<std::size_t> Ranks::exchange_sizes(const std::vector<std::size_t>& sizes) const {
   if (alone()) {
     return sizes;

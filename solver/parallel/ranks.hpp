@@ -81,6 +81,14 @@ class Ranks {
     return exchange(to);
   }
 
+  /// The values of all ranks everywhere, in the order of ranks.
+  template <class T>
+  std::vector<T> to_all(const std::vector<T>& values) const {
+    return exchange(std::vector<std::vector<T>>(static_cast<std::size_t>(size_), values));
+  }
+  /// Returns once all ranks have called it.
+  void meet() const;
+
  private:
   std::vector<std::size_t> exchange_sizes(const std::vector<std::size_t>& sizes) const;
   void exchange_bytes(const void* from, const std::vector<std::size_t>& sizes, void* to,

@@ -78,7 +78,9 @@ class Engine {
          const Ranks& ranks = {});
   /// The present state, between two steps; of several ranks, of all on the root and of none
   /// elsewhere (collective). @throws std::logic_error with gas around the metal.
-  EngineState state() const;
+  EngineState state() const { return state(false); }
+  /// The same on all ranks (collective).
+  EngineState state_everywhere() const { return state(true); }
 
   /// Advances by the smallest limit, but not beyond `until` (s). Returns the step taken, s.
   /// Collective. @throws std::runtime_error naming particle and term if a number is no longer one.
@@ -113,7 +115,7 @@ class Engine {
   void set_state(const std::vector<Vector>& velocity, const std::vector<double>& density);
 
   /// All particles of all ranks in the engine's order, on the root; nothing elsewhere (collective).
-  std::vector<Traveller> gather() const { return gather({}); }
+  std::vector<Traveller> gather() const { return gather({}, false); }
   /// The chosen particles of all ranks and those that touch them, in the engine's order, on the
   /// root; nothing elsewhere (collective). @param chosen per entry of particles(); @param touch the
   /// distance below which particles touch, m, at most the kernel's support.
@@ -159,8 +161,9 @@ class Engine {
   struct Moved {
     std::vector<std::uint32_t> arrived, entries;
   };
+  EngineState state(bool everywhere) const;
   /// @param chosen per entry; none: all.
-  std::vector<Traveller> gather(const std::vector<std::uint8_t>& chosen) const;
+  std::vector<Traveller> gather(const std::vector<std::uint8_t>& chosen, bool everywhere) const;
   double copy_reach() const;
   void check_ranks() const;
   std::vector<std::uint32_t> divide(const std::vector<Vector>& at);

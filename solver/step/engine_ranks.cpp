@@ -64,11 +64,11 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
              own = static_cast<std::size_t>(ranks.rank());
   const std::size_t n = particles_.size(), begin = n * own / size, end = n * (own + 1) / size;
   // The melt and what surrounds it costs by far the most; nothing has been measured yet.
-  std::vector<double> weights;
+  std::vector<Decomposition::Cost> costs;
   for (std::size_t i = begin; i < end; ++i) {
-    weights.push_back(particles_.phase[i] == Phase::liquid ? 50 : 1);
+    costs.push_back({1, 1, particles_.phase[i] == Phase::liquid ? 50.0 : 0.0});
   }
-  decomposition_.balance(std::span(at).subspan(begin, end - begin), weights);
+  decomposition_.balance(std::span(at).subspan(begin, end - begin), costs);
   std::vector<std::uint32_t> kept;
   std::vector<int> near;
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -251,14 +251,11 @@ bool Engine::out_of_balance() {
   rebuilds_since_division_ = 0;
   costs_ = unit_costs();
   const std::array<std::uint64_t, 3> count = workload();
-  double own = 0;
+  Decomposition::Cost own{};
   for (std::size_t k = 0; k < 3; ++k) {
-    own += costs_[k] * static_cast<double>(count[k]);
+    own[k] = costs_[k] * static_cast<double>(count[k]);
   }
-  ExactSum total;
-  total.add(own);
-  ranks().add(total);
-  imbalance_ = ranks().largest(own) * ranks().size() / total.total();
+  imbalance_ = Decomposition::unevenness(ranks(), own);
   // Where even the last division left as much, another one would, too.
   return imbalance_ > std::max(tolerated, 1.05 * imbalance_after_division_);
 }
@@ -277,13 +274,13 @@ void Engine::divide_anew(bool sort) {
     }
   }
   std::vector<Vector> places;
-  std::vector<double> weights;
+  std::vector<Decomposition::Cost> costs;
   std::vector<Traveller> own;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (particles_.home[i] == Home::here) {
       own.push_back(pack(i));
       places.push_back(particles_.position[i]);
-      weights.push_back(costs_[0] + heated[i] * costs_[1] + flows[i] * costs_[2]);
+      costs.push_back({costs_[0], heated[i] * costs_[1], flows[i] * costs_[2]});
       for (std::size_t d = 0; d < 3; ++d) {
         lower[d] = std::min(lower[d], particles_.position[i][d]);
       }
@@ -295,7 +292,7 @@ void Engine::divide_anew(bool sort) {
       t.order = place_in_space(t.position, lower, 3 * kernel_.smoothing_length);
     }
   }
-  imbalance_after_division_ = decomposition_.balance(places, weights);
+  imbalance_after_division_ = decomposition_.balance(places, costs);
   rebuilds_since_division_ = 0;
   const auto size = static_cast<std::size_t>(ranks().size());
   std::vector<std::vector<Traveller>> to(size), copies(size);
@@ -436,14 +433,15 @@ void Engine::update_copies() {
       });
 }
 
-std::vector<Traveller> Engine::gather(const std::vector<std::uint8_t>& chosen) const {
+std::vector<Traveller> Engine::gather(const std::vector<std::uint8_t>& chosen,
+                                      bool everywhere) const {
   std::vector<Traveller> own;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (particles_.home[i] == Home::here && (chosen.empty() || chosen[i] != 0)) {
       own.push_back(pack(i));
     }
   }
-  std::vector<Traveller> all = ranks().to_root(own);
+  std::vector<Traveller> all = everywhere ? ranks().to_all(own) : ranks().to_root(own);
   std::sort(all.begin(), all.end(), comes_before);
   return all;
 }
@@ -487,7 +485,7 @@ Particles Engine::collect(const std::vector<std::uint8_t>& chosen, double touch)
     });
     return found;
   }
-  const std::vector<Traveller> all = gather(wanted);
+  const std::vector<Traveller> all = gather(wanted, false);
   found.each_array([&](auto& values) { values.resize(all.size()); });
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i].write(found, i);

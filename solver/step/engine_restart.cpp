@@ -18,6 +18,7 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
     const Traveller& t = all[i];
     t.write(p, i);
     p.order[i] = i;
+    p.home[i] = Home::here;
     state.listed_at.push_back(t.listed_at);
     state.mobile.push_back(t.mobile);
     state.melt.viscosity.push_back(t.viscosity);
@@ -57,7 +58,7 @@ FlowMemory part_of(const FlowMemory& memory, const Particles& all,
 
 }  // namespace
 
-EngineState Engine::state() const {
+EngineState Engine::state(bool everywhere) const {
   if (gas_) {
     throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
   }
@@ -73,7 +74,7 @@ EngineState Engine::state() const {
       state.melt = melt_;
     }
   } else {
-    write_particles(state, gather());
+    write_particles(state, gather({}, everywhere));
   }
   state.limiters = limiters();
   state.ledger = ledger_;
