@@ -10,6 +10,9 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "pipelines"))
+from bench_scaling import AGREEMENTS, BANDWIDTH, LATENCY, scaling  # noqa: E402
+
 BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
 # A pool of a few particles, a second of work: for plumbing only.
 TINY = ["solver/cases/track_0wt.toml", "--set", "powder.surface=bare", "--set", "spacing=14 um",
@@ -70,6 +73,22 @@ class Bench(unittest.TestCase):
             self.assertAlmostEqual(sum(step[engine]["share_of_time"].values()), 1, 9)
         self.assertEqual(result["provenance"]["program"], "meltproof-bench")
 
+    def test_a_model_of_more_ranks_is_fitted_to_what_few_of_them_sent(self):
+        # Made up: four messages of a step, bytes that fall with the square root of the ranks, 10 % uneven a doubling.
+        runs = {f"ranks_{n}": {"ranks": n, "particles": 1000, "messages_per_rank_and_acoustic_step": 4.0,
+                               "bytes_per_rank_and_acoustic_step": 1e6 * n ** -0.5, "acoustic_steps": 100,
+                               "largest_over_mean_work": 1 + 0.1 * (n.bit_length() - 1), "seconds_on_one": [4.0, 6.0]}
+                for n in (2, 4, 8)}
+        found = scaling(runs)
+        self.assertAlmostEqual(found["model"]["bytes_exponent"], -0.5)
+        self.assertAlmostEqual(found["model"]["uneven_per_doubling"], 0.1)
+        self.assertAlmostEqual(found["seconds_per_acoustic_step_on_one_rank"], 0.1)
+        of_64 = next(row for row in found["says"] if row["ranks"] == 64)
+        expected = 0.1 / (0.1 / 64 * 1.6 + 4 * LATENCY + 1e6 / 8 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
+        self.assertAlmostEqual(of_64["strong_speedup"], expected)
+        self.assertLess(of_64["strong_efficiency"], 1)
+        self.assertIsNone(scaling({"step": {}}))
+
     def test_parts_are_joined_and_what_does_not_exist_is_said_to_be_pending(self):
         output = self.root / "bench.json"
         done = join(self.step, self.pairs, "--output", output)
@@ -81,11 +100,11 @@ class Bench(unittest.TestCase):
             self.assertIsInstance(figures[key]["met"], bool)
             self.assertTrue(figures[key]["unit"] and figures[key]["how"], key)
         self.assertIsNone(figures["ranks_2_over_1"]["value"])
-        self.assertIn("runs on several ranks do not exist yet", figures["ranks_2_over_1"]["pending"])
+        self.assertIn("nothing was run on two ranks", figures["ranks_2_over_1"]["pending"])
         self.assertEqual(figures["pair_loop_Mupd_per_core_f64"]["repeats"], [2, 4, 3])
         self.assertEqual(figures["pair_loop_simd_over_scalar"]["repeats"], [2, 4, 6])
         self.assertEqual(figures["camera_real_time_factor"]["max"], 10)
-        self.assertIn("pending: runs on several ranks", done.stdout)
+        self.assertIn("pending: nothing was run on two ranks", done.stdout)
         self.assertTrue(result["revision"] and result["machine"]["processor"] and result["machine"]["lanes_f64"])
         self.assertFalse(list(self.root.glob("*.tmp*")))
 
