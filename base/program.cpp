@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/program.hpp"
 
+#include <chrono>
 #include <exception>
 #include <sstream>
+#include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -43,9 +45,11 @@ int Program::run(int argc, const char* const* argv, const std::function<ExitStat
   try {
     return static_cast<int>(body());
   } catch (const InputError& problem) {
-    if (!hushed_) {
-      fmt::print(stderr, "{}: error: {}\n", name_, problem.what());
+    if (hushed_) {
+      // Where all find the same, the one that speaks has ended all of them by now.
+      std::this_thread::sleep_for(std::chrono::seconds(1));
     }
+    fmt::print(stderr, "{}: error: {}\n", name_, problem.what());
     return static_cast<int>(ExitStatus::bad_input);
   } catch (const Stopped& request) {
     if (!hushed_) {

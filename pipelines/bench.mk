@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How fast the suite is, and what memory it needs: some six minutes. It measures anew whenever it is
+# How fast the suite is, and what memory it needs: some four minutes. It measures anew whenever it is
 # asked for. solver/bench/README.md says how; pipelines/bench.toml what is asked of each figure.
 BENCH_WORK := reports/work/bench
 BENCH_REPORT := reports/bench.json

@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "pipelines"))
-from bench_scaling import AGREEMENTS, BANDWIDTH, LATENCY, scaling  # noqa: E402
+from bench_scaling import AGREEMENTS, BANDWIDTH, COPY_COST, LATENCY, scaling  # noqa: E402
 
 BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
 # A pool of a few particles, a second of work: for plumbing only.
@@ -75,7 +75,7 @@ class Bench(unittest.TestCase):
 
     def test_a_model_of_more_ranks_is_fitted_to_what_few_of_them_sent(self):
         # Made up: four messages of a step, bytes that fall with the square root of the ranks, 10 % uneven a doubling.
-        runs = {f"ranks_{n}": {"ranks": n, "particles": 1000, "messages_per_rank_and_acoustic_step": 4.0,
+        runs = {f"ranks_{n}": {"ranks": n, "particles": 1000, "messages_per_rank_and_acoustic_step": 4.0, "most_copies_on_a_rank": 50,
                                "bytes_per_rank_and_acoustic_step": 1e6 * n ** -0.5, "acoustic_steps": 100,
                                "largest_over_mean_work": 1 + 0.1 * (n.bit_length() - 1), "seconds_on_one": [4.0, 6.0]}
                 for n in (2, 4, 8)}
@@ -84,7 +84,7 @@ class Bench(unittest.TestCase):
         self.assertAlmostEqual(found["model"]["uneven_per_doubling"], 0.1)
         self.assertAlmostEqual(found["seconds_per_acoustic_step_on_one_rank"], 0.1)
         of_64 = next(row for row in found["says"] if row["ranks"] == 64)
-        expected = 0.1 / (0.1 / 64 * 1.6 + 4 * LATENCY + 1e6 / 8 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
+        expected = 0.1 / (0.1 / 64 * 1.6 + COPY_COST * 50 * 0.1 / 1000 + 4 * LATENCY + 1e6 / 8 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
         self.assertAlmostEqual(of_64["strong_speedup"], expected)
         self.assertLess(of_64["strong_efficiency"], 1)
         self.assertIsNone(scaling({"step": {}}))

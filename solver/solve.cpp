@@ -20,7 +20,10 @@ int main(int argc, char** argv) {
       "Several processes share a run: mpirun -n 4 meltproof-solve ... --threads 1, where "
       "processes\n"
       "times threads should not exceed the cores. Whatever their number, the numbers are the "
-      "same.");
+      "same.\n"
+      "mpirun kills a second after Ctrl-C or SIGTERM, perhaps before a checkpoint is written: give "
+      "it\n"
+      "--mca odls_base_sigkill_timeout 600.");
   if (!ranks.root()) {
     program.hush();
   }
@@ -46,6 +49,7 @@ int main(int argc, char** argv) {
                        "go on from the newest good checkpoint in the output folder; without one, "
                        "begin");
   const int status = program.run(argc, argv, [&] {
+    solver::MpiSession::check();
     solver::TrackCase track;
     Input input = solver::declare(track);
     if (!powder.empty()) {

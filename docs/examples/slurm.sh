@@ -23,7 +23,7 @@ track=$1 powder=$2 output=$3
 
 export OMP_NUM_THREADS=$SLURM_CPUS_PER_TASK OMP_PROC_BIND=close OMP_PLACES=cores
 # --restart begins where there is no checkpoint, and goes on from the newest good one where there is.
-srun build/release/bin/meltproof-solve "$track" --powder "$powder" --output "$output" \
+srun --mpi=pmix --cpus-per-task="$SLURM_CPUS_PER_TASK" build/release/bin/meltproof-solve "$track" --powder "$powder" --output "$output" \
   --threads "$SLURM_CPUS_PER_TASK" --restart --set spacing='2 um'
 status=$?
 

@@ -182,11 +182,13 @@ class TrackRun {
     try {
       dt = engine_->step(until);
     } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(
-          fmt::format("{}; {}", problem.what(),
-                      checkpoints_.last().empty()
-                          ? "no checkpoint had been written (see --checkpoint-every)"
-                          : "the last good checkpoint is " + checkpoints_.last().string()));
+      throw std::runtime_error(fmt::format(
+          "{}; {}", problem.what(),
+          !checkpoints_.last().empty()
+              ? "the last good checkpoint is " + checkpoints_.last().string()
+          : checkpoint_written_
+              ? "the last good checkpoint is the newest in " + checkpoints_.folder().string()
+              : "no checkpoint had been written (see --checkpoint-every)"));
     }
     const LaserBudget& beam = engine_->beam();
     if (engine_->time() <= t_.exposure) {
@@ -260,6 +262,7 @@ class TrackRun {
                           ? "there is no earlier checkpoint"
                           : "the one before it stands, " + checkpoints_.last().string()));
     }
+    checkpoint_written_ = true;
     written_ = std::chrono::steady_clock::now();
     if (stopping) {
       throw Stopped(
@@ -313,7 +316,8 @@ class TrackRun {
   std::optional<Engine> engine_;
   RunProgress run_;
   bool restarted_ = false;
-  double earlier_ = 0;  // s, of the parts of the run before this one
+  bool checkpoint_written_ = false;  // by the root, which alone knows its name
+  double earlier_ = 0;               // s, of the parts of the run before this one
   std::chrono::steady_clock::time_point begun_, written_;
 };
 

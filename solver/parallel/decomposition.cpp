@@ -62,9 +62,14 @@ struct Decomposition::Zoltan {
     }
     handle = Zoltan_Create(MPI_COMM_WORLD);
     const std::vector<std::pair<const char*, const char*>> settings{
-        {"DEBUG_LEVEL", "0"},     {"LB_METHOD", "RCB"},           {"OBJ_WEIGHT_DIM", "3"},
-        {"NUM_GID_ENTRIES", "1"}, {"NUM_LID_ENTRIES", "1"},       {"RETURN_LISTS", "NONE"},
-        {"KEEP_CUTS", "1"},       {"RCB_RECTILINEAR_BLOCKS", "1"},
+        {"DEBUG_LEVEL", "0"},
+        {"LB_METHOD", "RCB"},
+        {"OBJ_WEIGHT_DIM", "3"},
+        {"NUM_GID_ENTRIES", "1"},
+        {"NUM_LID_ENTRIES", "1"},
+        {"RETURN_LISTS", "NONE"},
+        {"KEEP_CUTS", "1"},
+        {"RCB_RECTILINEAR_BLOCKS", "1"},
         {"RCB_MULTICRITERIA_NORM", "3"}};
     for (const auto& [name, value] : settings) {
       if (Zoltan_Set_Param(handle, name, value) != ZOLTAN_OK) {

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
-#include <thread>
 
 #include <mpi.h>
+
+#include "base/error.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -46,11 +46,16 @@ MpiSession::~MpiSession() {
 
 void MpiSession::give_up(int status) const {
   if (running() && Ranks::world().size() > 1) {
-    // What all ranks find, the root says: it gets the time to.
-    if (!Ranks::world().root()) {
-      std::this_thread::sleep_for(std::chrono::seconds(1));
-    }
     MPI_Abort(MPI_COMM_WORLD, status);
+  }
+}
+
+void MpiSession::check() {
+  const char* tasks = std::getenv("SLURM_STEP_NUM_TASKS");
+  if (tasks != nullptr && std::atoi(tasks) > 1 && Ranks::world().alone()) {
+    throw InputError(std::string("srun started ") + tasks +
+                     " processes that do not know of each other and would all write the same "
+                     "files: use srun --mpi=pmix, or mpirun");
   }
 }
 

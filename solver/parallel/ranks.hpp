@@ -20,6 +20,8 @@ class MpiSession {
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
+  /// @throws InputError if srun started several processes of which each believes to be alone.
+  static void check();
   /// Ends all processes at once, after a failure of this one that the others do not know of; does
   /// nothing where the program is alone.
   void give_up(int status) const;
@@ -56,7 +58,8 @@ class Ranks {
   /// Gives to[r] to rank r; returns what the ranks gave to this one, joined in the order of ranks.
   template <class T>
   std::vector<T> exchange(const std::vector<std::vector<T>>& to) const {
-    static_assert(std::is_trivially_copyable_v<T>);
+    // What is sent is counted in words.
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 8 == 0);
     std::vector<T> all;
     std::vector<std::size_t> counts;
     for (const auto& part : to) {

@@ -108,7 +108,8 @@ class Engine {
   std::size_t list_builds() const { return list_builds_; }
   /// What limited the flow on all ranks so far; collective.
   LimiterCounts limiters() const;
-  /// Largest over mean cost of a rank when last looked at, 1 if perfect.
+  /// What a step takes with ranks that wait for each other after each part, over what it would with
+  /// all parts spread evenly, when last looked at, see Decomposition::unevenness().
   double imbalance() const { return imbalance_; }
   std::size_t lost() const { return lost_; }  ///< particles that left the domain
   /// Gives the liquid particles a velocity and lets the flow see it; for the start of a case.

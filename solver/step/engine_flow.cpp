@@ -129,7 +129,10 @@ bool Engine::change_phases() {
     const Vector& at = particles_.position[freezing[f]];
     for (std::size_t k = list.first[freezing[f]]; k < list.last[freezing[f]]; ++k) {
       const std::uint32_t j = list.index[k];
-      if (j < n && particles_.phase[j] == Phase::solid) {
+      // A copy of what melts in this step is told of it only afterwards.
+      const bool melts =
+          j < n && particles_.home[j] == Home::elsewhere && particles_.liquid_fraction[j] >= 1;
+      if (j < n && particles_.phase[j] == Phase::solid && !melts) {
         const Vector& other = particles_.position[j];
         const double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
         touches[f] = touches[f] != 0 || x * x + y * y + z * z < touch ? 1 : 0;

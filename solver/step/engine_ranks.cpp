@@ -177,7 +177,7 @@ Traveller Engine::pack(std::uint32_t i) const {
   t.freeze_time = p.freeze_time[i];
   t.cooling_rate = p.cooling_rate[i];
   t.freeze_gradient = p.freeze_gradient[i];
-  t.listed_at = built_at_.empty() ? p.position[i] : built_at_[i];
+  t.listed_at = flow_ ? built_at_[i] : p.position[i];
   if (flow_) {
     t.viscosity = melt_.viscosity[i];
     t.surface_tension = melt_.surface_tension[i];
@@ -376,6 +376,8 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     particles_.home[i] = Home::nowhere;
     particles_.phase[i] = Phase::solid;
     mobile_[i] = 0;
+    // A diffusivity that stayed behind would hold the time step.
+    thermal_diffusivity_[i] = diffusivity_[i] = 0;
     left.emplace(particles_.identity[i], i);
     moved.entries.push_back(i);
   }

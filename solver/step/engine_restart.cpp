@@ -34,18 +34,19 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
 }
 
 /// The entries of a flow's memory that belong to the melt of this rank.
-/// @param kept the particles that this rank keeps of all; @param home of those.
-FlowMemory part_of(const FlowMemory& memory, const Particles& all,
+/// @param phases of all particles; @param kept those that this rank keeps of them; @param home of
+/// these.
+FlowMemory part_of(const FlowMemory& memory, const std::vector<Phase>& phases,
                    const std::vector<std::uint32_t>& kept, const std::vector<Home>& home) {
-  std::vector<std::size_t> place(all.size(), 0);
+  std::vector<std::size_t> place(phases.size(), 0);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  for (std::size_t i = 0; i < phases.size(); ++i) {
     place[i] = count;
-    count += all.phase[i] == Phase::liquid ? 1 : 0;
+    count += phases[i] == Phase::liquid ? 1 : 0;
   }
   FlowMemory part;
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    if (home[k] == Home::here && all.phase[kept[k]] == Phase::liquid) {
+    if (home[k] == Home::here && phases[kept[k]] == Phase::liquid) {
       const std::size_t at = place[kept[k]];
       part.acceleration.push_back(memory.acceleration[at]);
       part.shift.push_back(memory.shift[at]);
@@ -132,12 +133,13 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
     throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
   }
   std::iota(particles_.order.begin(), particles_.order.end(), 0U);
+  times_at_balance_ = times_;
   if (!ranks.alone()) {
     check_ranks();
     // Whose a particle is follows from where it was when the lists were made.
-    const Particles all = particles_;
+    const std::vector<Phase> phases = particles_.phase;
     const std::vector<std::uint32_t> kept = divide(std::vector<Vector>(built_at_));
-    state.flow = part_of(state.flow, all, kept, particles_.home);
+    state.flow = part_of(state.flow, phases, kept, particles_.home);
     if (!ranks.root()) {
       state.limiters = {};  // counted once
     }
