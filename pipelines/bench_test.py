@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "pipelines"))
-from bench_scaling import AGREEMENTS, BANDWIDTH, COPY_COST, LATENCY, scaling  # noqa: E402
+from bench_scaling import AGREEMENTS, BANDWIDTH, LATENCY, scaling  # noqa: E402
 
 BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
 # A pool of a few particles, a second of work: for plumbing only.
@@ -77,16 +77,20 @@ class Bench(unittest.TestCase):
         # Made up: four messages of a step, bytes that fall with the square root of the ranks, 10 % uneven a doubling.
         runs = {f"ranks_{n}": {"ranks": n, "particles": 1000, "messages_per_rank_and_acoustic_step": 4.0, "most_copies_on_a_rank": 50,
                                "bytes_per_rank_and_acoustic_step": 1e6 * n ** -0.5, "acoustic_steps": 100,
-                               "largest_over_mean_work": 1 + 0.1 * (n.bit_length() - 1), "seconds_on_one": [4.0, 6.0]}
+                               "largest_over_mean_work": 1 + 0.1 * (n.bit_length() - 1), "seconds_on_one": [4.0, 6.0],
+                               "parts_on_one_s": {"flow": 6.0, "heat": 2.5, "state": 1.5}}
                 for n in (2, 4, 8)}
         found = scaling(runs)
         self.assertAlmostEqual(found["model"]["bytes_exponent"], -0.5)
         self.assertAlmostEqual(found["model"]["uneven_per_doubling"], 0.1)
         self.assertAlmostEqual(found["seconds_per_acoustic_step_on_one_rank"], 0.1)
         of_64 = next(row for row in found["says"] if row["ranks"] == 64)
-        expected = 0.1 / (0.1 / 64 * 1.6 + COPY_COST * 50 * 0.1 / 1000 + 4 * LATENCY + 1e6 / 8 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
+        expected = 0.1 / (0.1 / 64 * 1.6 + 0.15 * 50 * 0.1 / 1000 + 4 * LATENCY + 1e6 / 8 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
         self.assertAlmostEqual(of_64["strong_speedup"], expected)
         self.assertLess(of_64["strong_efficiency"], 1)
+        # Half of the particles on each: copies and bytes as on two ranks, unevenness as on 64.
+        expected = 0.05 / (0.05 * 1.6 + 0.15 * 50 * 0.1 / 1000 + 4 * LATENCY + 1e6 * 2 ** -0.5 / BANDWIDTH + 6 * AGREEMENTS * LATENCY)
+        self.assertAlmostEqual(of_64["weak_efficiency"], expected)
         self.assertIsNone(scaling({"step": {}}))
 
     def test_parts_are_joined_and_what_does_not_exist_is_said_to_be_pending(self):

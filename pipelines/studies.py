@@ -46,7 +46,7 @@ def small_result(run, folder, seconds):
     kept.update(flow_numbers(folder, result))
     acceptance = result.get("acceptance", {})
     # The melt clumps; what has frozen keeps its distance, so over all that ever melted the share is diluted.
-    kept["clumped_fraction"] = max(result.get("clumped_fraction_mean", 0.0),
+    kept["clumped_fraction"] = max(acceptance.get("liquid", {}).get("clumped_fraction_mean", 0.0),
                                    acceptance.get("ever_melted", {}).get("clumped_fraction", 0.0))
     kept["acceptance"] = acceptance
     kept["limiters"] = result.get("limiters", {})

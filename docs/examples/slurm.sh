@@ -6,7 +6,7 @@
 #   sbatch docs/examples/slurm.sh solver/cases/track_1wt.toml powder.h5 run_1wt
 #
 # The numbers do not depend on --ntasks and --cpus-per-task, nor on how often the run was stopped: they may be changed
-# from one job to the next.
+# from one job to the next. Written from the manual of Slurm and not tried: no machine with one was at hand.
 #SBATCH --job-name=meltproof
 #SBATCH --ntasks=64
 #SBATCH --cpus-per-task=1

@@ -71,7 +71,7 @@ def acceptance(track):
         return limiters[acted] / limiters[of] if limiters.get(of) else None
 
     return {"pass": found["pass"], "lost": found["lost_particles"], "clumped": ever["clumped_fraction"],
-            "melt_clumped": found["liquid"]["clumped_fraction"], "smallest": ever["smallest_spacings"],
+            "melt_clumped": found["liquid"]["clumped_fraction_mean"], "smallest": ever["smallest_spacings"],
             "volume": ever["filled_relative_error"], "melt_volume": found["liquid"]["filled_relative_error"],
             "height_um": height.get("mean_height_um"), "deepest_um": height.get("deepest_point_um"),
             "asked_clumped": asked["clumped_fraction_below"], "asked_volume": asked["filled_relative_error_within"],

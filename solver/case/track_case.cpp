@@ -155,11 +155,12 @@ Input declare(TrackCase& t) {
                                      .unit = "Pa",
                                      .about = "At which the boiling temperature holds.",
                                      .minimum = 1})
-      .text(t.vapour_heat,
-            {.name = "vapour_heat",
-             .about = "What leaves with the vapour: the latent heat, since the particles keep their "
-                      "mass, or also its sensible heat above 298.15 K.",
-             .choices = {"latent", "latent_and_sensible"}})
+      .text(
+          t.vapour_heat,
+          {.name = "vapour_heat",
+           .about = "What leaves with the vapour: the latent heat, since the particles keep their "
+                    "mass, or also its sensible heat above 298.15 K.",
+           .choices = {"latent", "latent_and_sensible"}})
       .quantity(t.heat_transfer_coefficient,
                 {.name = "heat_transfer_coefficient",
                  .unit = "W m-2 K-1",
@@ -169,13 +170,14 @@ Input declare(TrackCase& t) {
 
   InputTable output("output", "What is written, and when.");
   output
-      .quantity(t.pool_temperature,
-                {.name = "pool_temperature",
-                 .unit = "K",
-                 .about = "The isotherm that outlines the melt pool, as a measurement defines it; 0: "
-                          "the liquidus of the base material. The fusion zone keeps the liquidus.",
-                 .minimum = 0,
-                 .maximum = 6000})
+      .quantity(
+          t.pool_temperature,
+          {.name = "pool_temperature",
+           .unit = "K",
+           .about = "The isotherm that outlines the melt pool, as a measurement defines it; 0: "
+                    "the liquidus of the base material. The fusion zone keeps the liquidus.",
+           .minimum = 0,
+           .maximum = 6000})
       .quantity(t.frame_rate,
                 {.name = "frame_rate",
                  .unit = "Hz",
@@ -264,14 +266,14 @@ Model make_model(const TrackCase& t, const Domain& domain) {
                       .exposure = t.exposure,
                       .incidence = t.incidence_angle,
                       .azimuth = t.incidence_azimuth};
-  model.surface_loss = SurfaceLossSettings{
-      .evaporation = t.evaporation,
-      .radiation = t.radiation,
-      .ambient_temperature = t.ambient_temperature,
-      .ambient_pressure = t.ambient_pressure,
-      .heat_transfer_coefficient = t.heat_transfer_coefficient,
-      .vapour_heat = t.vapour_heat == "latent" ? VapourHeat::latent
-                                               : VapourHeat::latent_and_sensible};
+  model.surface_loss = SurfaceLossSettings{.evaporation = t.evaporation,
+                                           .radiation = t.radiation,
+                                           .ambient_temperature = t.ambient_temperature,
+                                           .ambient_pressure = t.ambient_pressure,
+                                           .heat_transfer_coefficient = t.heat_transfer_coefficient,
+                                           .vapour_heat = t.vapour_heat == "latent"
+                                                              ? VapourHeat::latent
+                                                              : VapourHeat::latent_and_sensible};
   model.flow = flow_settings(t.flow, t.form == "as_printed" ? 20 : 1);
   if (t.flow.enabled && t.flow.surroundings == "gas") {
     model.gas = t.flow.gas;

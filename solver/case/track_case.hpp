@@ -8,8 +8,8 @@
 
 #include "base/input.hpp"
 #include "base/material.hpp"
-#include "solver/particles/particles.hpp"
 #include "solver/case/flow_input.hpp"
+#include "solver/particles/particles.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
@@ -63,15 +63,16 @@ struct Discretisation {
   double bed_additive_mass_fraction = 0;  ///< of the powder as spheres; 0 for a bare plate
 };
 
-/// Fills plate and grains with particles on one lattice. Eight sub-points a side measure how much of a
-/// lattice cell each powder fills; the cells fullest of the additive become its particles until its
-/// volume is reached, then likewise the base powder: both volumes are kept to half a particle, and every
-/// particle is of one powder, as in the paper.
+/// Fills plate and grains with particles on one lattice. Eight sub-points a side measure how much
+/// of a lattice cell each powder fills; the cells fullest of the additive become its particles
+/// until its volume is reached, then likewise the base powder: both volumes are kept to half a
+/// particle, and every particle is of one powder, as in the paper.
 /// @throws InputError when the bed is missing, or too coarse a spacing leaves the beam or layer
 /// unresolved.
 Discretisation discretise(const TrackCase& track, const Mixture& mixture);
 
-/// Plate and additive as the case's property tables have them. @throws InputError as read_material().
+/// Plate and additive as the case's property tables have them. @throws InputError as
+/// read_material().
 Mixture read_mixture(const TrackCase& track);
 
 /// Sentences about what the case cannot resolve well; empty if nothing is wrong.

@@ -23,10 +23,6 @@ nlohmann::json window_json(const std::vector<HistoryLine>& lines, const TrackCas
   add("pool_width", [](const HistoryLine& l) { return l.pool.width; });
   add("pool_depth", [](const HistoryLine& l) { return l.pool.depth; });
   add("any_liquid_length", [](const HistoryLine& l) { return l.any_liquid.length; });
-  // In the window like the sizes: at one instant a single pair of a small pool would decide.
-  const WindowMean clumped = window_mean(lines, from, t.exposure,
-                                         [](const HistoryLine& l) { return l.clumped; });
-  result["clumped_fraction_mean"] = clumped.mean;
   result["window"] =
       fmt::format("mean over {:.0f} to {:.0f} us, the last {:.0f} us of the exposure", 1e6 * from,
                   1e6 * t.exposure, 1e6 * (t.exposure - from));
@@ -52,6 +48,12 @@ void add_fusion_zone(nlohmann::json& result, const TrackCase& t, const Mixture& 
 }
 
 }  // namespace
+
+double clumped_in_window(const TrackCase& t, const std::vector<HistoryLine>& lines) {
+  return window_mean(lines, std::max(0.0, t.exposure - t.averaging_window), t.exposure,
+                     [](const HistoryLine& l) { return l.clumped; })
+      .mean;
+}
 
 double pool_isotherm(const TrackCase& t, const Mixture& mixture) {
   return t.pool_temperature > 0 ? t.pool_temperature : mixture.liquidus(0);

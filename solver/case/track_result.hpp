@@ -13,6 +13,9 @@ namespace meltproof::solver {
 /// The isotherm that outlines the melt pool, K: the case's, or the liquidus of the base material.
 double pool_isotherm(const TrackCase& track, const Mixture& mixture);
 
+/// Mean clumped share of the melt (1) over the window in which the pool's sizes are averaged.
+double clumped_in_window(const TrackCase& track, const std::vector<HistoryLine>& lines);
+
 /// Whether any melt still lies on solid metal, on whatever rank (collective); a drop in flight has
 /// nothing to freeze to.
 bool melt_left(const Engine& engine);

@@ -142,12 +142,10 @@ class TrackRun {
     }
     made_.particles = {};
     const Domain& box = made_.domain;
-    spdlog::info(
-        "{}: {} particles, spacing {:.3g} um, {:.1f} neighbours each, domain {:.0f} x {:.0f} x "
-        "{:.0f} um",
-        options_.name, particle_count(), 1e6 * t_.spacing, engine_->neighbours().mean_neighbours(),
-        1e6 * (box.upper[0] - box.lower[0]), 1e6 * (box.upper[1] - box.lower[1]),
-        1e6 * (box.upper[2] - box.lower[2]));
+    spdlog::info("{}: {} particles, spacing {:.3g} um, domain {:.0f} x {:.0f} x {:.0f} um",
+                 options_.name, particle_count(), 1e6 * t_.spacing,
+                 1e6 * (box.upper[0] - box.lower[0]), 1e6 * (box.upper[1] - box.lower[1]),
+                 1e6 * (box.upper[2] - box.lower[2]));
   }
 
   /// To the next line of the history, snapshot, or the moment at which the beam goes off.
@@ -285,6 +283,9 @@ class TrackRun {
     }
     acceptance.liquid = run_.melt;
     acceptance.liquid_volume = run_.melt_volume;
+    if (engine_->model().flow) {
+      acceptance.clumped_mean = clumped_in_window(t_, run_.lines);
+    }
     provenance_.wall_time = run_.wall_time = seconds();
     nlohmann::json result = track_result(t_, made_, *engine_, run_, whole.particles(), acceptance);
     if (writer == nullptr) {

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "solver/flow/free_surface.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 

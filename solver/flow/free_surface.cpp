@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 

@@ -5,7 +5,7 @@
 
 #include "solver/flow/free_surface.hpp"
 #include "solver/flow/separation.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "solver/multiphase/closed_flow.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 

@@ -3,6 +3,7 @@
 // leave length, width, temperature and energy looking right.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -50,6 +51,9 @@ struct Acceptance {
   AcceptanceSettings asked;
   double spacing = 0;  ///< m
   NearestDistances liquid, ever_melted;
+  /// Mean of the melt's clumped share over a window of time. Where it is given it is judged in
+  /// place of the share at one instant, in which a single pair of a small pool would decide.
+  std::optional<double> clumped_mean;
   std::size_t lost = 0;
   FilledVolume liquid_volume, ever_melted_volume;
   bool has_height = false;

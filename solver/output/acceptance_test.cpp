@@ -98,6 +98,18 @@ TEST(Acceptance, ClumpedMeltFails) {
   EXPECT_NEAR(a.liquid.clumped, static_cast<double>(moved) / static_cast<double>(liquid), 0.01);
   EXPECT_NEAR(a.liquid.smallest, 0.3, 1e-9);
   EXPECT_EQ(clumped_fraction(p), a.liquid.clumped);
+  EXPECT_NE(a.table().find("NOT HELD"), std::string::npos) << a.table();
+}
+
+TEST(Acceptance, TheMeanOfAWindowIsJudgedInPlaceOfTheInstant) {
+  Acceptance a = measure_acceptance(flat(), settings());
+  a.clumped_mean = 0.02;  // two pairs in a hundred, though none at this instant
+  EXPECT_FALSE(a.pass());
+  EXPECT_NE(a.table().find("2.00 %"), std::string::npos) << a.table();
+  EXPECT_EQ(a.json()["liquid"]["clumped_fraction_mean"], 0.02);
+  a.liquid.clumped = 0.5;
+  a.clumped_mean = 0.005;
+  EXPECT_TRUE(a.pass()) << a.table();
 }
 
 TEST(Acceptance, ALostParticleFails) {

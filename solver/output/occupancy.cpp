@@ -5,7 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/exact_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -126,9 +127,9 @@ FilledVolume fill(const MetalGrid& grid, const Particles& p,
     filled[b] = sum;
     spheres[b] = inside;
   });
-  result.filled = cell * block_sum(blocks.size(), [&](std::size_t b) { return filled[b]; });
+  result.filled = cell * exact_sum(blocks.size(), [&](std::size_t b) { return filled[b]; }).total();
   result.union_of_spheres =
-      cell * block_sum(blocks.size(), [&](std::size_t b) { return spheres[b]; });
+      cell * exact_sum(blocks.size(), [&](std::size_t b) { return spheres[b]; }).total();
   return result;
 }
 

@@ -10,7 +10,7 @@
 #include "base/artifact.hpp"
 #include "base/error.hpp"
 #include "solver/output/metal_grid.hpp"
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 namespace {

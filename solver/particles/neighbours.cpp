@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/particles/lanes.hpp"
 
 namespace meltproof::solver {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/step/engine.hpp"
 #include "solver/step/stopwatch.hpp"
 

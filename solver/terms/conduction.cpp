@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 

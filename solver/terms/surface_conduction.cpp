@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/terms/interface.hpp"
 
 namespace meltproof::solver {

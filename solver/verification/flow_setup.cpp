@@ -8,7 +8,7 @@
 
 #include <Eigen/Dense>
 
-#include "solver/particles/block_sum.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 namespace {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums and extremes over particles that do not depend on the number of threads.
+// Loops over particles whose result does not depend on the number of threads; sums are in
+// exact_sum.hpp.
 #pragma once
 
 #include <algorithm>
@@ -18,27 +19,6 @@ void for_each_particle(std::size_t n, const Body& body) {
   for (std::int64_t i = 0; i < count; ++i) {
     body(static_cast<std::size_t>(i));
   }
-}
-
-/// The sum of value(i) for i < n: blocks of 256 in order, then the blocks in order, whatever the
-/// threads.
-template <class Value>
-double block_sum(std::size_t n, const Value& value) {
-  constexpr std::size_t block = 256;
-  const std::size_t blocks = (n + block - 1) / block;
-  std::vector<double> part(blocks);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    double sum = 0;
-    for (std::size_t i = b * block; i < std::min(n, (b + 1) * block); ++i) {
-      sum += value(i);
-    }
-    part[b] = sum;
-  }
-  double sum = 0;
-  for (const double p : part) {
-    sum += p;
-  }
-  return sum;
 }
 
 /// The largest value(i) for i < n, or `least` if n is zero.
