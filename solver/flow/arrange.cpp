@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who is melt, who is wall, and the records that the passes read.
+// Who is melt, who is wall, their slots and lists, and the records that the passes read.
 #include <algorithm>
-#include <numeric>
 
 #include "solver/flow/free_surface.hpp"
-#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
-
-void FreeSurfaceFlow::fit(std::size_t n) {
-  for (auto* field : {&filled_, &area_, &exposed_, &pull_, &curvature_, &pressure_}) {
-    field->resize(n, 0.0);
-  }
-  for (auto* field :
-       {&colour_, &normal_, &missing_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
-    field->resize(n, Vector{});
-  }
-  density_gradient_.resize(std::max(n, density_gradient_.size()));
-}
 
 /// Who is melt and who is its wall. A wall knows it from the melt's lists, those of other ranks
 /// included: who finds that its melt touches a copy tells the owner, who tells everybody.
@@ -68,129 +55,233 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
         });
     halo_.set_roles(role_);
   }
+  std::sort(wall_.begin(), wall_.end());
 }
 
-void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              const NeighbourList& list, bool everything,
-                              const std::vector<std::uint32_t>& came_or_went) {
-  const std::size_t n = particles.size(), all = list.void_index + std::size_t{1};
-  // Whoever had a role before may have lost it; the records of all others still hold.
-  std::vector<std::uint32_t> changed;
-  if (everything || role_.size() != n) {
-    changed.resize(n);
-    std::iota(changed.begin(), changed.end(), 0U);
-  } else {
-    changed = came_or_went;
-    for (const auto* members : near_melt()) {
-      changed.insert(changed.end(), members->begin(), members->end());
+/// Slots in the order of the particles: melt and walls, images of them, the void, and behind it
+/// whatever else walls have in reach.
+void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
+                                     const NeighbourList& list) {
+  const std::size_t n = particles.size();
+  particle_.clear();
+  near_ghosts_.clear();
+  behind_walls_.clear();
+  // Of particles and, behind them, images and the void.
+  std::vector<std::uint32_t> slot_of(list.void_index + std::size_t{1}, nowhere);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (role_[i] != 0) {
+      slot_of[i] = static_cast<std::uint32_t>(particle_.size());
+      particle_.push_back(i);
     }
   }
-  find_roles(particles, ghosts, list);
-  std::sort(wall_.begin(), wall_.end());
+  auto next = static_cast<std::uint32_t>(particle_.size());
+  for (std::uint32_t g = 0; g < ghosts.size(); ++g) {
+    if (role_[ghosts[g].source] != 0) {
+      slot_of[n + g] = next++;
+      near_ghosts_.push_back(g);
+    }
+  }
+  list_.void_index = melt_near_wall_.void_index = next++;
+  slot_of[list.void_index] = list_.void_index;
+  std::vector<std::uint8_t> behind(list.void_index, 0);
+  for (const std::uint32_t i : wall_) {
+    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
+      if (slot_of[list.index[k]] == nowhere) {
+        behind[list.index[k]] = 1;
+      }
+    }
+  }
+  for (std::uint32_t j = 0; j < behind.size(); ++j) {
+    if (behind[j] == 0) {
+      continue;
+    }
+    // What was lost takes part in nothing.
+    if (particles.phase[j < n ? j : ghosts[j - n].source] == Phase::lost) {
+      slot_of[j] = list_.void_index;
+    } else {
+      slot_of[j] = next++;
+      behind_walls_.push_back(j);
+    }
+  }
+  translate_lists(slot_of, list);
+  slot_.assign(slot_of.begin(), slot_of.begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::uint32_t i = 0; i < n; ++i) {
+    slot_[i] = role_[i] != 0 ? slot_[i] : nowhere;
+  }
+  const auto slots = [&](const std::vector<std::uint32_t>& members,
+                         std::vector<std::uint32_t>& out) {
+    out.resize(members.size());
+    std::transform(members.begin(), members.end(), out.begin(),
+                   [&](std::uint32_t i) { return slot_[i]; });
+  };
+  slots(liquid_, liquid_slot_);
+  slots(wall_, wall_slot_);
+}
+
+/// The flow's lists: those of melt and walls, entry by entry, so that sums keep their order.
+/// @param slot_of of particles, images and the void.
+void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
+                                      const NeighbourList& list) {
+  list_.reach = list.reach;
+  list_.first.assign(particle_.size(), 0);
+  list_.last.assign(particle_.size(), 0);
+  std::size_t end = 0;
+  for (std::size_t s = 0; s < particle_.size(); ++s) {
+    const std::uint32_t i = particle_[s];
+    list_.first[s] = end;
+    end += list.last[i] - list.first[i];  // nothing of copies
+    list_.last[s] = end;
+  }
+  list_.index.resize(end);
+  const auto slot = [&](std::uint32_t j) {
+    return slot_of[j] == nowhere ? list_.void_index : slot_of[j];
+  };
+  for_each_particle(particle_.size(), [&](std::size_t s) {
+    const auto from = list.index.begin() + static_cast<std::ptrdiff_t>(list.first[particle_[s]]);
+    std::transform(from, from + static_cast<std::ptrdiff_t>(list_.last[s] - list_.first[s]),
+                   list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]), slot);
+  });
   // A wall listens to the melt only, which is a small part of its list.
+  const std::size_t images = particle_.size() + near_ghosts_.size();
+  std::vector<std::uint8_t> is_melt(images, 0);
+  for (std::size_t s = 0; s < particle_.size(); ++s) {
+    is_melt[s] = role_[particle_[s]] == 1 ? 1 : 0;
+  }
   melt_near_wall_.first.clear();
   melt_near_wall_.last.clear();
   melt_near_wall_.index.clear();
   for (const std::uint32_t i : wall_) {
+    const std::uint32_t s = slot_of[i];
     const std::size_t begin = melt_near_wall_.index.size();
     melt_near_wall_.first.push_back(begin);
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      const std::uint32_t j = list.index[k];
-      if (j != list.void_index && role_[j < n ? j : ghosts[j - n].source] == 1) {
+    for (std::size_t k = list_.first[s]; k < list_.last[s]; ++k) {
+      const std::uint32_t j = list_.index[k];
+      if (j < images && is_melt[j] != 0) {
         melt_near_wall_.index.push_back(j);
       }
     }
     while ((melt_near_wall_.index.size() - begin) % lane_count != 0) {
-      melt_near_wall_.index.push_back(list.void_index);
+      melt_near_wall_.index.push_back(list_.void_index);
     }
     melt_near_wall_.last.push_back(melt_near_wall_.index.size());
   }
-  near_ghosts_.clear();
-  for (std::uint32_t g = 0; g < ghosts.size(); ++g) {
-    if (role_[ghosts[g].source] != 0) {
-      near_ghosts_.push_back(g);
-    }
+}
+
+/// Every field as long as there are slots, empty.
+void FreeSurfaceFlow::fit() {
+  const std::size_t own = particle_.size(), all = list_.void_index + std::size_t{1};
+  for (auto* field : {&filled_, &area_, &exposed_, &pull_, &curvature_, &pressure_}) {
+    field->assign(own, 0.0);
   }
-  fit(n);
-  limited_.assign(n, 0);
-  disorder_.assign(n, 0);
-  // Solids stand still, so their records are written here and not again. Behind everybody stands
-  // the void.
-  changed.insert(changed.end(), wall_.begin(), wall_.end());
-  changed.insert(changed.end(), wall_copies_.begin(), wall_copies_.end());
-  motion_.resize(all);
-  density_gradient_.resize(all);
-  surface_.resize(all);
+  for (auto* field :
+       {&colour_, &normal_, &missing_gradient_, &tension_gradient_, &acceleration_, &shift_}) {
+    field->assign(own, Vector{});
+  }
+  melt_.assign(own, {});
+  limited_.assign(own, 0);
+  disorder_.assign(own, 0);
+  density_gradient_.assign(all, {});
   outer_curvature_.assign(all, {});
-  force_.resize(all);
-  // One thread: an index may stand in the list twice.
-  for (const std::uint32_t i : changed) {
-    const Vector& at = particles.position[i];
-    // What was lost takes part in nothing.
-    const bool here = particles.phase[i] != Phase::lost && particles.home[i] != Home::nowhere;
-    motion_[i] =
-        here ? MotionRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0} : MotionRecord{};
-    surface_[i] = here ? SurfaceRecord{at[0], at[1], at[2], 0, 0, 0, 0, 0} : SurfaceRecord{};
-    force_[i] = ForceRecord{};
-    // What a particle was when it last had a role must not come back with the next one.
+  force_.assign(all, {});
+  motion_.assign(all + behind_walls_.size(), {});
+  surface_.assign(all + behind_walls_.size(), {});
+}
+
+void FreeSurfaceFlow::forget() {
+  slot_.clear();
+  arrived_.clear();
+}
+
+void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
+                              const NeighbourList& list) {
+  // What is known of those who were there, by particle.
+  std::vector<std::pair<std::uint32_t, FlowParticle>> known;
+  for (std::uint32_t i = 0; i < slot_.size(); ++i) {
+    if (slot_[i] != nowhere) {
+      known.emplace_back(i, particle(i));
+    }
+  }
+  known.insert(known.end(), arrived_.begin(), arrived_.end());
+  arrived_.clear();
+  find_roles(particles, ghosts, list);
+  hand_out_slots(particles, ghosts, list);
+  fit();
+  for (const auto& [i, what] : known) {
     if (role_[i] == 0) {
-      colour_[i] = {};
+      continue;
     }
-    if (role_[i] != 1) {
-      density_gradient_[i] = {};
-      area_[i] = exposed_[i] = pull_[i] = curvature_[i] = pressure_[i] = 0;
-      normal_[i] = acceleration_[i] = shift_[i] = missing_gradient_[i] = tension_gradient_[i] = {};
+    const std::uint32_t s = slot_[i];
+    colour_[s] = what.colour;
+    melt_[s] = what.properties;
+    // A wall has no more than that: what it was as melt must not come back when it melts again.
+    if (role_[i] == 1) {
+      const Vector& gradient = what.density_gradient;
+      density_gradient_[s] = {gradient[0], gradient[1], gradient[2]};
+      tension_gradient_[s] = what.tension_gradient;
+      acceleration_[s] = what.acceleration;
+      shift_[s] = what.shift;
+      exposed_[s] = what.exposed;
+      pressure_[s] = what.pressure;
     }
+  }
+  place_standing(particles, ghosts);
+}
+
+/// Solids stand still, so their places are written here and not again.
+void FreeSurfaceFlow::place_standing(const Particles& particles, const std::vector<Ghost>& ghosts) {
+  const auto place = [&](std::size_t s, std::uint32_t i, const Vector& at) {
+    motion_[s] = {at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0};
+    surface_[s] = {at[0], at[1], at[2], 0, 0, 0, 0, 0};
+  };
+  for (std::size_t s = 0; s < particle_.size(); ++s) {
+    const std::uint32_t i = particle_[s];
+    const Vector& at = particles.position[i];
+    place(s, i, at);
     if (role_[i] == 2) {
-      force_[i] = ForceRecord{at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0, 0, 0};
+      force_[s] = {at[0], at[1], at[2], 0, 0, 0, particles.volume[i], 0, 0, 0};
     }
   }
-  for (std::size_t g = 0; g < ghosts.size(); ++g) {
-    const std::uint32_t source = ghosts[g].source;
-    const Vector at = ghosts[g].image_of(particles.position[source]);
-    motion_[n + g] = motion_[source];
-    surface_[n + g] = surface_[source];
-    force_[n + g] = force_[source];
+  for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
+    const Vector at = ghost.image_of(particles.position[ghost.source]);
+    place(s, ghost.source, at);
+    force_[s] = force_[source];
+    if (role_[ghost.source] == 2) {
+      force_[s].x = at[0];
+      force_[s].y = at[1];
+      force_[s].z = at[2];
+    }
     const DensityRecord& gradient = density_gradient_[source];
-    const Vector image = ghosts[g].mirrored({gradient.x, gradient.y, gradient.z});
-    density_gradient_[n + g] = {image[0], image[1], image[2]};
-    motion_[n + g].x = surface_[n + g].x = at[0];
-    motion_[n + g].y = surface_[n + g].y = at[1];
-    motion_[n + g].z = surface_[n + g].z = at[2];
-    if (role_[source] == 2) {
-      force_[n + g].x = at[0];
-      force_[n + g].y = at[1];
-      force_[n + g].z = at[2];
-    }
+    const Vector image = ghost.mirrored({gradient.x, gradient.y, gradient.z});
+    density_gradient_[s] = {image[0], image[1], image[2]};
+  });
+  const std::size_t n = particles.size();
+  std::size_t s = list_.void_index;
+  for (const std::uint32_t j : behind_walls_) {
+    const std::uint32_t i = j < n ? j : ghosts[j - n].source;
+    place(++s, i, j < n ? particles.position[i] : ghosts[j - n].image_of(particles.position[i]));
   }
-  motion_.back() = MotionRecord{};
-  density_gradient_.back() = DensityRecord{};
-  surface_.back() = SurfaceRecord{};
-  force_.back() = ForceRecord{};
 }
 
 void FreeSurfaceFlow::write_motion(const Particles& particles, const std::vector<Ghost>& ghosts) {
   const auto write = [&](std::uint32_t i) {
     const Vector &at = particles.position[i], &v = particles.velocity[i];
-    motion_[i] = {at[0],
-                  at[1],
-                  at[2],
-                  v[0],
-                  v[1],
-                  v[2],
-                  particles.mass[i] / particles.density[i],
-                  particles.density[i]};
+    motion_[slot_[i]] = {at[0],
+                         at[1],
+                         at[2],
+                         v[0],
+                         v[1],
+                         v[2],
+                         particles.mass[i] / particles.density[i],
+                         particles.density[i]};
   };
   for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
   for_each_particle(liquid_copies_.size(), [&](std::size_t k) { write(liquid_copies_[k]); });
-  const std::size_t n = particles.size();
-  for (const std::uint32_t g : near_ghosts_) {
-    const std::uint32_t source = ghosts[g].source;
-    const Vector at = ghosts[g].image_of(particles.position[source]);
-    const Vector v = ghosts[g].mirrored(particles.velocity[source]);
-    motion_[n + g] = {
+  for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
+    const Vector at = ghost.image_of(particles.position[ghost.source]);
+    const Vector v = ghost.mirrored(particles.velocity[ghost.source]);
+    motion_[s] = {
         at[0], at[1], at[2], v[0], v[1], v[2], motion_[source].volume, motion_[source].density};
-  }
+  });
 }
 
 }  // namespace meltproof::solver

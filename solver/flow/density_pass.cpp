@@ -5,19 +5,17 @@
 
 #include "solver/flow/free_surface.hpp"
 #include "solver/flow/separation.hpp"
-#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 
-void FreeSurfaceFlow::colour_gradients(const NeighbourList& list,
-                                       const std::vector<std::uint32_t>& members) {
+void FreeSurfaceFlow::colour_gradients(const std::vector<std::uint32_t>& members) {
   const MotionRecord* all = motion_.data();
   for_each_particle(members.size(), [&](std::size_t member) {
     const std::uint32_t i = members[member];
     const MotionRecord& own = all[i];
     Lane filled = 0, cx = 0, cy = 0, cz = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane volume = gather(all, j, &MotionRecord::volume);
       const Lane weight = volume * kernel_.slope(r) / r;
@@ -33,16 +31,14 @@ void FreeSurfaceFlow::colour_gradients(const NeighbourList& list,
 
 /// Of the smooth profile, once per call of set_properties(): it changes little within a few steps,
 /// and an old one damps a little less but never excites.
-void FreeSurfaceFlow::density_gradients(const Particles& particles,
-                                        const std::vector<Ghost>& ghosts,
-                                        const NeighbourList& list) {
+void FreeSurfaceFlow::density_gradients(const std::vector<Ghost>& ghosts) {
   const MotionRecord* all = motion_.data();
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const MotionRecord& own = all[i];
     GradientSums sums;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane density = gather(all, j, &MotionRecord::density);
       const Lane factor = where_positive(density, softened_slope(kernel_, r, r2), Lane(0.0));
@@ -54,23 +50,22 @@ void FreeSurfaceFlow::density_gradients(const Particles& particles,
   halo_.exchange(
       Halo::liquid, 3,
       [&](std::uint32_t i, double* out) {
-        const DensityRecord& gradient = density_gradient_[i];
+        const DensityRecord& gradient = density_gradient_[slot_[i]];
         out[0] = gradient.x;
         out[1] = gradient.y;
         out[2] = gradient.z;
       },
       [&](std::uint32_t i, const double* in) {
-        density_gradient_[i] = {in[0], in[1], in[2]};
+        density_gradient_[slot_[i]] = {in[0], in[1], in[2]};
       });
-  const std::size_t n = particles.size();
-  for (const std::uint32_t g : near_ghosts_) {
-    const DensityRecord& source = density_gradient_[ghosts[g].source];
-    const Vector image = ghosts[g].mirrored({source.x, source.y, source.z});
-    density_gradient_[n + g] = {image[0], image[1], image[2]};
-  }
+  for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
+    const DensityRecord& gradient = density_gradient_[source];
+    const Vector image = ghost.mirrored({gradient.x, gradient.y, gradient.z});
+    density_gradient_[s] = {image[0], image[1], image[2]};
+  });
 }
 
-void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list, double dt) {
+void FreeSurfaceFlow::densities(Particles& particles, double dt) {
   const MotionRecord* all = motion_.data();
   const DensityRecord* gradients = density_gradient_.data();
   const bool corrected = settings_.diffusion_form == DensityDiffusion::corrected;
@@ -82,13 +77,13 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
              : settings_.sound_speed / (settings_.density_relaxation * kernel_.smoothing_length);
   const double at_centre = kernel_.value(0.0);
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member], particle = liquid_[member];
     const MotionRecord& own = all[i];
     const DensityRecord& gradient = gradients[i];
-    const double reference = particles.mass[i] / particles.volume[i];
+    const double mass = particles.mass[particle], reference = mass / particles.volume[particle];
     Lane compression = 0, diffused = 0, summed = 0, filled = 0, cx = 0, cy = 0, cz = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane ux = own.vx - gather(all, j, &MotionRecord::vx);
       const Lane uy = own.vy - gather(all, j, &MotionRecord::vy);
@@ -119,24 +114,24 @@ void FreeSurfaceFlow::densities(Particles& particles, const NeighbourList& list,
     filled_[i] = sum_lanes(filled) / lattice_sum_;
     double rate = own.density * sum_lanes(compression) + diffusion * sum_lanes(diffused);
     if (relax) {
-      const double sum = (sum_lanes(summed) + particles.mass[i] * at_centre) / lattice_sum_;
+      const double sum = (sum_lanes(summed) + mass * at_centre) / lattice_sum_;
       // The colour gradient counts volumes as they are now, the sum masses.
       const double strength =
           std::hypot(colour_[i][0], colour_[i][1], colour_[i][2]) * kernel_.smoothing_length;
       rate += relaxation * density_excess(sum / depth_.covered(strength * own.density / sum),
                                           own.density, reference);
     }
-    particles.density[i] += dt * rate;
+    particles.density[particle] += dt * rate;
   });
   halo_.exchange(
       Halo::liquid, 4,
       [&](std::uint32_t i, double* out) {
         out[0] = particles.density[i];
-        std::copy_n(colour_[i].begin(), 3, out + 1);
+        std::copy_n(colour_[slot_[i]].begin(), 3, out + 1);
       },
       [&](std::uint32_t i, const double* in) {
         particles.density[i] = in[0];
-        std::copy_n(in + 1, 3, colour_[i].begin());
+        std::copy_n(in + 1, 3, colour_[slot_[i]].begin());
       });
 }
 

@@ -5,15 +5,13 @@
 
 #include "solver/flow/free_surface.hpp"
 #include "solver/flow/separation.hpp"
-#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 
 void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
   const ForceRecord* all = force_.data();
-  const std::size_t n = role_.size();
-  for_each_particle(wall_.size(), [&](std::size_t member) {
-    const std::uint32_t i = wall_[member];
+  for_each_particle(wall_slot_.size(), [&](std::size_t member) {
+    const std::uint32_t i = wall_slot_[member];
     const ForceRecord& own = all[i];
     WallSums<Lane> sums;
     for (std::size_t k = melt_near_wall_.first[member]; k < melt_near_wall_.last[member];
@@ -44,34 +42,33 @@ void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
   halo_.exchange(
       Halo::wall, 4,
       [&](std::uint32_t i, double* out) {
-        const ForceRecord& record = force_[i];
+        const ForceRecord& record = force_[slot_[i]];
         out[0] = record.pressure;
         out[1] = record.vx;
         out[2] = record.vy;
         out[3] = record.vz;
       },
       [&](std::uint32_t i, const double* in) {
-        ForceRecord& record = force_[i];
+        ForceRecord& record = force_[slot_[i]];
         record.pressure = in[0];
         record.vx = in[1];
         record.vy = in[2];
         record.vz = in[3];
       });
-  for (const std::uint32_t g : near_ghosts_) {
-    if (role_[ghosts[g].source] == 2) {
-      const ForceRecord& source = force_[ghosts[g].source];
-      const Vector v = ghosts[g].mirrored({source.vx, source.vy, source.vz});
-      ForceRecord& image = force_[n + g];
-      image.pressure = source.pressure;
+  for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
+    if (role_[ghost.source] == 2) {
+      const ForceRecord& wall = force_[source];
+      const Vector v = ghost.mirrored({wall.vx, wall.vy, wall.vz});
+      ForceRecord& image = force_[s];
+      image.pressure = wall.pressure;
       image.vx = v[0];
       image.vy = v[1];
       image.vz = v[2];
     }
-  }
+  });
 }
 
-void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& list,
-                             const MeltProperties& properties) {
+void FreeSurfaceFlow::forces(const Particles& particles) {
   const ForceRecord* all = force_.data();
   const QuinticSpline half(kernel_.smoothing_length / 2, dimensions_);
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
@@ -84,12 +81,12 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
   const double artificial =
       settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const ForceRecord& own = all[i];
     Lane strain = 0, ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
     const Lane own_square = own.volume * own.volume;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane ux = own.vx - gather(all, j, &ForceRecord::vx);
       const Lane uy = own.vy - gather(all, j, &ForceRecord::vy);
@@ -126,7 +123,7 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
         sz += push * dz;
       }
     }
-    const double mass = particles.mass[i];
+    const double mass = particles.mass[liquid_[member]];
     Vector& a = acceleration_[i];
     a = {sum_lanes(ax) / mass, sum_lanes(ay) / mass, sum_lanes(az) / mass};
     if (shift) {
@@ -145,10 +142,10 @@ void FreeSurfaceFlow::forces(const Particles& particles, const NeighbourList& li
     }
     double inward = 0;
     if (settings_.surface_tension) {
-      inward += properties.surface_tension[i] * curvature_[i];
+      inward += melt_[i].surface_tension * curvature_[i];
     }
     if (settings_.recoil) {
-      inward += properties.recoil[i];
+      inward += melt_[i].recoil;
     }
     const double area_over_mass = area_[i] / mass, volume_over_mass = 1 / own.density;
     for (std::size_t d = 0; d < 3; ++d) {

@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "solver/particles/loops.hpp"
-
 namespace meltproof::solver {
 
 FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpline& kernel,
@@ -34,10 +32,10 @@ FreeSurfaceFlow::FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpli
 
 void FreeSurfaceFlow::kick_and_drift(Particles& particles, double dt) {
   for_each_particle(liquid_.size(), [&](std::size_t k) {
-    const std::uint32_t i = liquid_[k];
+    const std::uint32_t i = liquid_[k], s = liquid_slot_[k];
     for (std::size_t d = 0; d < 3; ++d) {
-      particles.velocity[i][d] += dt / 2 * acceleration_[i][d];
-      particles.position[i][d] += dt * (particles.velocity[i][d] + dt * shift_[i][d]);
+      particles.velocity[i][d] += dt / 2 * acceleration_[s][d];
+      particles.position[i][d] += dt * (particles.velocity[i][d] + dt * shift_[s][d]);
     }
   });
 }
@@ -56,142 +54,136 @@ void FreeSurfaceFlow::follow(Particles& particles) {
 }
 
 FlowParticle FreeSurfaceFlow::particle(std::uint32_t i) const {
-  const DensityRecord& gradient = density_gradient_[i];
-  return {colour_[i],
+  const std::uint32_t s = i < slot_.size() ? slot_[i] : nowhere;
+  if (s == nowhere) {
+    return {};
+  }
+  const DensityRecord& gradient = density_gradient_[s];
+  return {colour_[s],
           {gradient.x, gradient.y, gradient.z},
-          tension_gradient_[i],
-          acceleration_[i],
-          shift_[i],
-          exposed_[i],
-          pressure_[i]};
+          tension_gradient_[s],
+          acceleration_[s],
+          shift_[s],
+          exposed_[s],
+          pressure_[s],
+          melt_[s]};
 }
 
-void FreeSurfaceFlow::set_particle(std::uint32_t i, const FlowParticle& what) {
-  colour_[i] = what.colour;
-  const Vector& gradient = what.density_gradient;
-  density_gradient_[i] = {gradient[0], gradient[1], gradient[2]};
-  tension_gradient_[i] = what.tension_gradient;
-  acceleration_[i] = what.acceleration;
-  shift_[i] = what.shift;
-  exposed_[i] = what.exposed;
-  pressure_[i] = what.pressure;
-}
-
-void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
-                               const NeighbourList& list, const MeltProperties& properties) {
-  write_surface(particles, ghosts, list, properties);
-  curvatures(ghosts, list);
-  const std::size_t n = particles.size();
+void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Ghost>& ghosts) {
+  write_surface(particles, ghosts);
+  curvatures(ghosts);
   const double stiffness = settings_.sound_speed * settings_.sound_speed;
   const auto write = [&](std::uint32_t i) {
+    const std::uint32_t s = slot_[i];
     const double density = particles.density[i];
     const double reference = particles.mass[i] / particles.volume[i];
-    pressure_[i] = state_pressure(density, reference, stiffness * reference, 0);
+    pressure_[s] = state_pressure(density, reference, stiffness * reference, 0);
     const Vector &at = particles.position[i], &v = particles.velocity[i];
-    force_[i] = {at[0],
+    force_[s] = {at[0],
                  at[1],
                  at[2],
                  v[0],
                  v[1],
                  v[2],
                  particles.mass[i] / density,
-                 pressure_[i],
+                 pressure_[s],
                  density,
-                 properties.viscosity[i]};
+                 melt_[s].viscosity};
   };
   for_each_particle(liquid_.size(), [&](std::size_t k) { write(liquid_[k]); });
   for_each_particle(liquid_copies_.size(), [&](std::size_t k) { write(liquid_copies_[k]); });
-  for (const std::uint32_t g : near_ghosts_) {
-    const std::uint32_t source = ghosts[g].source;
-    if (role_[source] == 1) {
-      const Vector at = ghosts[g].image_of(particles.position[source]);
-      const Vector v = ghosts[g].mirrored(particles.velocity[source]);
-      force_[n + g] = force_[source];
-      force_[n + g].x = at[0];
-      force_[n + g].y = at[1];
-      force_[n + g].z = at[2];
-      force_[n + g].vx = v[0];
-      force_[n + g].vy = v[1];
-      force_[n + g].vz = v[2];
+  for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
+    if (role_[ghost.source] == 1) {
+      const Vector at = ghost.image_of(particles.position[ghost.source]);
+      const Vector v = ghost.mirrored(particles.velocity[ghost.source]);
+      ForceRecord& image = force_[s] = force_[source];
+      image.x = at[0];
+      image.y = at[1];
+      image.z = at[2];
+      image.vx = v[0];
+      image.vy = v[1];
+      image.vz = v[2];
     }
-  }
+  });
   walls(ghosts);
-  missing_gradients(list);
-  forces(particles, list, properties);
+  missing_gradients();
+  forces(particles);
 }
 
-void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& ghosts,
-                             const NeighbourList& list, const MeltProperties& properties,
-                             double dt) {
+void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& ghosts, double dt) {
   write_motion(particles, ghosts);
-  densities(particles, list, dt);
-  evaluate(particles, ghosts, list, properties);
+  densities(particles, dt);
+  evaluate(particles, ghosts);
   for_each_particle(liquid_.size(), [&](std::size_t k) {
-    const std::uint32_t i = liquid_[k];
+    const std::uint32_t i = liquid_[k], s = liquid_slot_[k];
     for (std::size_t d = 0; d < 3; ++d) {
-      particles.velocity[i][d] += dt / 2 * acceleration_[i][d];
+      particles.velocity[i][d] += dt / 2 * acceleration_[s][d];
     }
   });
   limiters_.particle_steps += liquid_.size();
   limiters_.wall_steps += wall_.size();
-  for (const std::uint32_t i : liquid_) {
+  for (const std::uint32_t i : liquid_slot_) {
     limiters_.curvature += limited_[i];
   }
-  for (const std::uint32_t i : wall_) {
+  for (const std::uint32_t i : wall_slot_) {
     limiters_.wall_pressure += limited_[i];
   }
 }
 
 FlowMemory FreeSurfaceFlow::memory() const {
   FlowMemory memory;
-  for (const std::uint32_t i : liquid_) {
+  for (const std::uint32_t i : liquid_slot_) {
     memory.acceleration.push_back(acceleration_[i]);
     memory.shift.push_back(shift_[i]);
     memory.area.push_back(exposed_[i]);
     memory.pressure.push_back(pressure_[i]);
+    memory.viscosity.push_back(melt_[i].viscosity);
+    memory.surface_tension.push_back(melt_[i].surface_tension);
+    memory.recoil.push_back(melt_[i].recoil);
   }
   return memory;
 }
 
 void FreeSurfaceFlow::remember(const FlowMemory& memory, const LimiterCounts& limiters) {
-  for (std::size_t k = 0; k < liquid_.size(); ++k) {
-    const std::uint32_t i = liquid_[k];
+  for (std::size_t k = 0; k < liquid_slot_.size(); ++k) {
+    const std::uint32_t i = liquid_slot_[k];
     acceleration_[i] = memory.acceleration[k];
     shift_[i] = memory.shift[k];
     exposed_[i] = memory.area[k];
     pressure_[i] = memory.pressure[k];
+    melt_[i] = {memory.viscosity[k], memory.surface_tension[k], memory.recoil[k]};
   }
   limiters_ = limiters;
 }
 
-std::string FreeSurfaceFlow::diagnose(const Particles& particles, std::uint32_t i,
-                                      const MeltProperties& properties) const {
+std::string FreeSurfaceFlow::diagnose(const Particles& particles, std::uint32_t i) const {
   const auto bad = [](const Vector& v) { return !std::isfinite(v[0] + v[1] + v[2]); };
   if (!std::isfinite(particles.density[i])) {
     return fmt::format("the continuity term (density {})", particles.density[i]);
   }
-  if (bad(colour_[i])) {
+  const std::uint32_t s = slot_[i];
+  if (bad(colour_[s])) {
     return "the colour gradient";
   }
-  if (!std::isfinite(curvature_[i])) {
+  if (!std::isfinite(curvature_[s])) {
     return "the curvature of the surface";
   }
-  if (!std::isfinite(properties.surface_tension[i]) || bad(tension_gradient_[i])) {
+  if (!std::isfinite(melt_[s].surface_tension) || bad(tension_gradient_[s])) {
     return "the gradient of the surface tension (Marangoni force)";
   }
-  if (!std::isfinite(properties.recoil[i])) {
+  if (!std::isfinite(melt_[s].recoil)) {
     return "the recoil pressure";
   }
-  if (!std::isfinite(properties.viscosity[i])) {
+  if (!std::isfinite(melt_[s].viscosity)) {
     return "the viscosity";
   }
-  const double shifted = std::hypot(shift_[i][0], shift_[i][1], shift_[i][2]);
+  const double shifted = std::hypot(shift_[s][0], shift_[s][1], shift_[s][2]);
   const Vector& v = particles.velocity[i];
   if (!(shifted <= std::hypot(v[0], v[1], v[2]))) {
     return fmt::format("the transport velocity, {:.4g} m/s", shifted);
   }
   return fmt::format("the pressure and viscous forces (pressure {:.4g} Pa, density {:.4g} kg/m3)",
-                     pressure_[i], particles.density[i]);
+                     pressure_[s], particles.density[i]);
 }
 
 }  // namespace meltproof::solver

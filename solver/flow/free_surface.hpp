@@ -3,12 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/parallel/halo.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/particles/neighbours.hpp"
 #include "solver/terms/continuity.hpp"
 #include "solver/terms/interface.hpp"
@@ -56,11 +59,11 @@ struct FlowSettings {
   double skin = 0.5;  ///< of the Verlet lists, in spacings
 };
 
-/// What the melt is like, per particle; only entries of liquid particles count.
+/// What the melt is like at one particle.
 struct MeltProperties {
-  std::vector<double> viscosity;        ///< Pa s, factor included
-  std::vector<double> surface_tension;  ///< N m-1; of solids too, for its gradient
-  std::vector<double> recoil;           ///< Pa
+  double viscosity = 0;        ///< Pa s, factor included
+  double surface_tension = 0;  ///< N m-1; of solids too, for its gradient
+  double recoil = 0;           ///< Pa
 };
 
 /// What the flow takes from one step into the next, an entry per liquid particle in the order of
@@ -70,12 +73,15 @@ struct FlowMemory {
   std::vector<Vector> shift;         ///< m s-2, times the step the transport velocity's share
   std::vector<double> area;          ///< m^(d-1)
   std::vector<double> pressure;      ///< Pa
+  std::vector<double> viscosity, surface_tension, recoil;  ///< MeltProperties
 };
 
-/// What a particle takes along within the flow when another rank comes to own or to copy it.
+/// What the flow keeps of a particle near the melt when lists or phases change, and what it takes
+/// along when another rank comes to own or to copy it.
 struct FlowParticle {
   Vector colour{}, density_gradient{}, tension_gradient{}, acceleration{}, shift{};
   double exposed = 0, pressure = 0;
+  MeltProperties properties;
 };
 
 /// Counts of everything that limited a value, since the start of a run.
@@ -91,68 +97,65 @@ struct LimiterCounts {
 /// pressure; then walls, interface and forces; then the other half kick. Sums are gathered over
 /// lists whose order belongs to the particle. Each rank computes its own particles; what their
 /// neighbours' sums need of them goes to the copies between two passes.
+///
+/// Melt and walls are a small part of the metal, so everything the flow knows stands in **slots**
+/// of its own, in the particles' order without the gaps: arrange() hands them out, and its own
+/// lists name slots. Whoever asks from outside asks by particle, and is told zero of one without.
 class FreeSurfaceFlow {
  public:
   /// @param halo brings values to copies on other ranks; outlives the flow.
   FreeSurfaceFlow(const FlowSettings& settings, const QuinticSpline& kernel, double spacing,
                   int dimensions, Halo& halo);
 
-  /// To be called when phases, indices or lists have changed: finds liquid and wall particles.
-  /// @param everything indices or positions of solids have changed too, so all records are written.
-  /// @param changed particles that came from other ranks, or went there, since the last call.
+  /// To be called when phases or lists have changed: finds liquid and wall particles. What is known
+  /// of those that were there before stays.
   void arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-               const NeighbourList& list, bool everything,
-               const std::vector<std::uint32_t>& changed = {});
+               const NeighbourList& list);
+  /// To be called when indices change: nothing is known any more of anybody, until set_particle()
+  /// or set_properties() and evaluate().
+  void forget();
+  /// What melt, walls and their copies are like now. @param of takes a particle's index and returns
+  /// its MeltProperties; called on several threads.
+  template <class Of>
+  void set_melt(const Of& of) {
+    for_each_particle(particle_.size(), [&](std::size_t s) { melt_[s] = of(particle_[s]); });
+  }
   /// To be called when the properties have changed: gradients of the surface tension.
-  void set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
-                      const NeighbourList& list, const MeltProperties& properties);
+  void set_properties(const Particles& particles, const std::vector<Ghost>& ghosts);
 
   /// First half kick and drift of the liquid particles.
   void kick_and_drift(Particles& particles, double dt);
   /// Density, forces and second half kick, at the new positions.
-  void finish(Particles& particles, const std::vector<Ghost>& ghosts, const NeighbourList& list,
-              const MeltProperties& properties, double dt);
+  void finish(Particles& particles, const std::vector<Ghost>& ghosts, double dt);
 
   /// Forces at the present positions, without advancing anything; needed once at the start and
   /// whenever indices have changed.
-  void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts,
-                const NeighbourList& list, const MeltProperties& properties);
+  void evaluate(const Particles& particles, const std::vector<Ghost>& ghosts);
 
   /// Brings places and velocities of the liquid to its copies.
   void follow(Particles& particles);
 
-  /// For a particle that goes to another rank, and one that comes from there: to be called before
-  /// arrange(), with an index that was there at the last call.
+  /// For a particle that goes to another rank.
   FlowParticle particle(std::uint32_t i) const;
-  void set_particle(std::uint32_t i, const FlowParticle& what);
+  /// For one that comes from there: holds from the next arrange() on.
+  void set_particle(std::uint32_t i, const FlowParticle& what) { arrived_.emplace_back(i, what); }
 
   /// For a run that is stopped and continued; of the particles of this rank.
   FlowMemory memory() const;
   /// Takes it back, once arrange() has found the same liquid particles.
   void remember(const FlowMemory& memory, const LimiterCounts& limiters);
 
-  /// Area through which a particle gives off heat, m^(d-1), see exposed_area(); zero inside. Liquid
-  /// particles only.
-  const std::vector<double>& area() const { return exposed_; }
-  const std::vector<double>& pressure() const { return pressure_; }    ///< Pa
-  const std::vector<double>& curvature() const { return curvature_; }  ///< 1/m, at the surface
-  const std::vector<Vector>& normal() const { return normal_; }        ///< outward, zero inside
-  const std::vector<Vector>& acceleration() const { return acceleration_; }  ///< m s-2
+  /// Area through which liquid particle i gives off heat, m^(d-1), see exposed_area(); zero inside.
+  double area(std::uint32_t i) const { return of(exposed_, i); }
+  double pressure(std::uint32_t i) const { return of(pressure_, i); }  ///< Pa
+  MeltProperties properties(std::uint32_t i) const { return of(melt_, i); }
   const std::vector<std::uint32_t>& liquid() const { return liquid_; }
   const std::vector<std::uint32_t>& wall() const { return wall_; }
-  /// All of both, copies of other ranks' included.
-  std::array<const std::vector<std::uint32_t>*, 4> near_melt() const {
-    return {&liquid_, &wall_, &liquid_copies_, &wall_copies_};
-  }
-  bool arranged() const { return !role_.empty(); }
-  /// Room for so many particles.
-  void fit(std::size_t n);
   const LimiterCounts& limiters() const { return limiters_; }
   const FlowSettings& settings() const { return settings_; }
 
-  /// Which term made the acceleration of particle i no number: a sentence.
-  std::string diagnose(const Particles& particles, std::uint32_t i,
-                       const MeltProperties& properties) const;
+  /// Which term made the acceleration of liquid particle i no number: a sentence.
+  std::string diagnose(const Particles& particles, std::uint32_t i) const;
 
  private:
   /// Positions and motion; one cache line.
@@ -183,40 +186,65 @@ class FreeSurfaceFlow {
     double viscosity = 0;  // Pa s
   };
 
+  static constexpr std::uint32_t nowhere = 0xffffffff;
+  /// Of a particle without a slot, nothing.
+  template <class Value>
+  Value of(const std::vector<Value>& values, std::uint32_t i) const {
+    const std::uint32_t s = i < slot_.size() ? slot_[i] : nowhere;
+    return s == nowhere ? Value{} : values[s];
+  }
+
   void find_roles(const Particles& particles, const std::vector<Ghost>& ghosts,
                   const NeighbourList& list);
+  void hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
+                      const NeighbourList& list);
+  void translate_lists(const std::vector<std::uint32_t>& slot_of, const NeighbourList& list);
+  void fit();
+  void place_standing(const Particles& particles, const std::vector<Ghost>& ghosts);
   void write_motion(const Particles& particles, const std::vector<Ghost>& ghosts);
-  void colour_gradients(const NeighbourList& list, const std::vector<std::uint32_t>& members);
-  void density_gradients(const Particles& particles, const std::vector<Ghost>& ghosts,
-                         const NeighbourList& list);
-  void densities(Particles& particles, const NeighbourList& list, double dt);
-  void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
-                     const NeighbourList& list, const MeltProperties& properties);
-  void leave_disorder_out(const NeighbourList& list);
-  template <class Visit>
-  void for_each_near_melt(const Visit& visit) const;
-  void curvatures(const std::vector<Ghost>& ghosts, const NeighbourList& list);
-  void curvatures_below(const NeighbourList& list);
-  void missing_gradients(const NeighbourList& list);
+  void colour_gradients(const std::vector<std::uint32_t>& members);
+  void density_gradients(const std::vector<Ghost>& ghosts);
+  void densities(Particles& particles, double dt);
+  void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts);
+  void leave_disorder_out();
+  void curvatures(const std::vector<Ghost>& ghosts);
+  void curvatures_below();
+  void missing_gradients();
   void walls(const std::vector<Ghost>& ghosts);
-  void forces(const Particles& particles, const NeighbourList& list,
-              const MeltProperties& properties);
+  void forces(const Particles& particles);
+  /// Calls visit(slot, ghost, slot of its source) for each image of melt and walls.
+  template <class Visit>
+  void for_each_image(const std::vector<Ghost>& ghosts, const Visit& visit) const {
+    for (std::uint32_t g = 0; g < near_ghosts_.size(); ++g) {
+      const Ghost& ghost = ghosts[near_ghosts_[g]];
+      visit(static_cast<std::uint32_t>(particle_.size()) + g, ghost, slot_[ghost.source]);
+    }
+  }
 
   FlowSettings settings_;
   QuinticSpline kernel_;
   double spacing_;
   int dimensions_;
   Halo& halo_;
-  std::vector<std::uint32_t> liquid_, wall_;                // of this rank
-  std::vector<std::uint32_t> liquid_copies_, wall_copies_;  // of others'
-  std::vector<std::uint32_t> near_ghosts_;                  // ghosts of liquid and wall particles
-  std::vector<std::uint8_t> role_;                          // 0 neither, 1 liquid, 2 wall
-  NeighbourList melt_near_wall_;  // of wall_[k], k in place of the particle: liquid only
+  // Particles of this rank, and their slots in the same order.
+  std::vector<std::uint32_t> liquid_, wall_, liquid_slot_, wall_slot_;
+  std::vector<std::uint32_t> liquid_copies_, wall_copies_;  // particles of others
+  std::vector<std::uint8_t> role_;          // of every particle: 0 neither, 1 liquid, 2 wall
+  std::vector<std::uint32_t> slot_;         // of every particle, or nowhere
+  std::vector<std::uint32_t> particle_;     // of every slot of melt and walls, increasing
+  std::vector<std::uint32_t> near_ghosts_;  // images of those, whose slots follow
+  // Behind them the void, and behind it the metal that only walls have in reach: it stands still,
+  // and only its place and volume are known.
+  std::vector<std::uint32_t> behind_walls_;
+  NeighbourList list_;            // of slots: of the melt and the walls of this rank
+  NeighbourList melt_near_wall_;  // of wall_slot_[k], k in place of the slot: liquid only
+  std::vector<std::pair<std::uint32_t, FlowParticle>> arrived_;  // since the last arrange()
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;
   std::vector<SurfaceRecord> surface_;
   std::vector<CurvatureRecord> outer_curvature_;
   std::vector<ForceRecord> force_;
+  std::vector<MeltProperties> melt_;
   std::vector<Vector> colour_, normal_, tension_gradient_, acceleration_, shift_;
   SurfaceDepth depth_;
   double lattice_sum_ = 1;      // sum V W of the undisturbed lattice

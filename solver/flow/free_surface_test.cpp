@@ -91,7 +91,7 @@ TEST(Interface, ADropHasTheAreaOfItsSphere) {
     const Engine engine(std::move(particles), mixture, Diffusivity{}, model);
     double area = 0;
     for (const std::uint32_t i : engine.flow().liquid()) {
-      area += engine.flow().area()[i];
+      area += engine.flow().area(i);
     }
     const double pi = 3.14159265358979;
     const double exact =

@@ -5,56 +5,43 @@
 
 #include "solver/flow/free_surface.hpp"
 #include "solver/flow/separation.hpp"
-#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 
-/// Melt and walls, copies included.
-template <class Visit>
-void FreeSurfaceFlow::for_each_near_melt(const Visit& visit) const {
-  for (const auto* members : near_melt()) {
-    for_each_particle(members->size(), [&](std::size_t k) { visit((*members)[k]); });
-  }
-}
-
-void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vector<Ghost>& ghosts,
-                                    const NeighbourList& list, const MeltProperties& properties) {
-  const auto write = [&](std::uint32_t i) {
-    const Vector &at = particles.position[i], &c = colour_[i];
+void FreeSurfaceFlow::write_surface(const Particles& particles, const std::vector<Ghost>& ghosts) {
+  for_each_particle(particle_.size(), [&](std::size_t s) {
+    const Vector &at = particles.position[particle_[s]], &c = colour_[s];
     const double size = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
     const double strength = size * kernel_.smoothing_length;
-    SurfaceRecord& record = surface_[i];
-    record = {at[0], at[1], at[2], 0, 0, 0, properties.surface_tension[i], 0};
-    normal_[i] = {};
+    SurfaceRecord& record = surface_[s];
+    record = {at[0], at[1], at[2], 0, 0, 0, melt_[s].surface_tension, 0};
+    normal_[s] = {};
     if (strength >= interface_threshold) {
       // The colour gradient points into the metal.
-      normal_[i] = {-c[0] / size, -c[1] / size, -c[2] / size};
-      record.nx = normal_[i][0];
-      record.ny = normal_[i][1];
-      record.nz = normal_[i][2];
+      normal_[s] = {-c[0] / size, -c[1] / size, -c[2] / size};
+      record.nx = normal_[s][0];
+      record.ny = normal_[s][1];
+      record.nz = normal_[s][2];
       record.depth = depth_(strength) * kernel_.smoothing_length;
     }
-  };
-  for_each_near_melt(write);
-  const std::size_t n = particles.size();
+  });
   const auto write_images = [&] {
-    for (const std::uint32_t g : near_ghosts_) {
-      const std::uint32_t source = ghosts[g].source;
+    for_each_image(ghosts, [&](std::uint32_t s, const Ghost& ghost, std::uint32_t source) {
       const SurfaceRecord& record = surface_[source];
-      const Vector at = ghosts[g].image_of(particles.position[source]);
-      const Vector normal = ghosts[g].mirrored({record.nx, record.ny, record.nz});
-      surface_[n + g] = {at[0],     at[1],     at[2],          normal[0],
-                         normal[1], normal[2], record.tension, record.depth};
-    }
+      const Vector at = ghost.image_of(particles.position[ghost.source]);
+      const Vector normal = ghost.mirrored({record.nx, record.ny, record.nz});
+      surface_[s] = {at[0],     at[1],     at[2],          normal[0],
+                     normal[1], normal[2], record.tension, record.depth};
+    });
   };
   write_images();
-  leave_disorder_out(list);
+  leave_disorder_out();
   write_images();
 }
 
 /// A weak colour gradient is the second layer's, or the disorder of the interior: there tension
 /// would draw clumps together. Only what lies right below an outermost particle counts.
-void FreeSurfaceFlow::leave_disorder_out(const NeighbourList& list) {
+void FreeSurfaceFlow::leave_disorder_out() {
   const SurfaceRecord* all = surface_.data();
   const double outermost = outermost_depth_ * kernel_.smoothing_length;
   const double near = std::pow(below_outermost * kernel_.smoothing_length, 2);
@@ -65,8 +52,8 @@ void FreeSurfaceFlow::leave_disorder_out(const NeighbourList& list) {
       return;
     }
     Lane found = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       found +=
@@ -74,49 +61,47 @@ void FreeSurfaceFlow::leave_disorder_out(const NeighbourList& list) {
     }
     disorder_[i] = sum_lanes(found) > 0 ? 0 : 1;
   };
-  for_each_particle(liquid_.size(), [&](std::size_t k) { look(liquid_[k]); });
-  for_each_particle(wall_.size(), [&](std::size_t k) { look(wall_[k]); });
+  for_each_particle(liquid_.size(), [&](std::size_t k) { look(liquid_slot_[k]); });
+  for_each_particle(wall_.size(), [&](std::size_t k) { look(wall_slot_[k]); });
   halo_.exchange(
-      Halo::metal_near_melt, 1, [&](std::uint32_t i, double* out) { *out = disorder_[i]; },
-      [&](std::uint32_t i, const double* in) { disorder_[i] = *in > 0 ? 1 : 0; });
-  const auto leave_out = [&](std::uint32_t i) {
-    if (disorder_[i] != 0) {
-      surface_[i].depth = surface_[i].nx = surface_[i].ny = surface_[i].nz = 0;
-      normal_[i] = {};
+      Halo::metal_near_melt, 1, [&](std::uint32_t i, double* out) { *out = disorder_[slot_[i]]; },
+      [&](std::uint32_t i, const double* in) { disorder_[slot_[i]] = *in > 0 ? 1 : 0; });
+  for_each_particle(particle_.size(), [&](std::size_t s) {
+    if (disorder_[s] != 0) {
+      surface_[s].depth = surface_[s].nx = surface_[s].ny = surface_[s].nz = 0;
+      normal_[s] = {};
     }
-  };
-  for_each_near_melt(leave_out);
+  });
 }
 
-void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts,
-                                     const NeighbourList& list, const MeltProperties& properties) {
+void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts) {
   write_motion(particles, ghosts);
   // Walls stand still and melt moves little between two calls, so their normals are kept until the
   // next one.
-  colour_gradients(list, wall_);
-  colour_gradients(list, liquid_);
+  colour_gradients(wall_slot_);
+  colour_gradients(liquid_slot_);
   halo_.exchange(
       Halo::metal_near_melt, 3,
-      [&](std::uint32_t i, double* out) { std::copy_n(colour_[i].begin(), 3, out); },
-      [&](std::uint32_t i, const double* in) { std::copy_n(in, 3, colour_[i].begin()); });
+      [&](std::uint32_t i, double* out) { std::copy_n(colour_[slot_[i]].begin(), 3, out); },
+      [&](std::uint32_t i, const double* in) { std::copy_n(in, 3, colour_[slot_[i]].begin()); });
   if (settings_.density_diffusion > 0 && settings_.diffusion_form == DensityDiffusion::corrected) {
-    density_gradients(particles, ghosts, list);
+    density_gradients(ghosts);
   }
   if (!settings_.marangoni) {
     return;
   }
-  write_surface(particles, ghosts, list, properties);
+  write_surface(particles, ghosts);
   const SurfaceRecord* all = surface_.data();
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     tension_gradient_[i] = {};
     if (own.depth <= 0) {
       return;
     }
     GradientSums sums;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane factor = softened_slope(kernel_, r, r2);
       sums.add(factor, own.tension - gather(all, j, &SurfaceRecord::tension), dx, dy, dz);
@@ -125,11 +110,11 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   });
 }
 
-void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const NeighbourList& list) {
+void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts) {
   const SurfaceRecord* all = surface_.data();
   const double h = kernel_.smoothing_length, outermost = outermost_depth_ * h;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     area_[i] = pull_[i] = curvature_[i] = 0;
     outer_curvature_[i] = {};
@@ -138,8 +123,8 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
       return;
     }
     Lane turn = 0, reach = 0, inset = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane factor = where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0)) *
@@ -172,19 +157,20 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
   halo_.exchange(
       Halo::liquid, 2,
       [&](std::uint32_t i, double* out) {
-        out[0] = outer_curvature_[i].curvature;
-        out[1] = outer_curvature_[i].weight;
+        out[0] = outer_curvature_[slot_[i]].curvature;
+        out[1] = outer_curvature_[slot_[i]].weight;
       },
       [&](std::uint32_t i, const double* in) {
-        outer_curvature_[i] = {in[0], in[1]};
+        outer_curvature_[slot_[i]] = {in[0], in[1]};
       });
-  for (const std::uint32_t g : near_ghosts_) {
-    outer_curvature_[role_.size() + g] = outer_curvature_[ghosts[g].source];
+  for (std::size_t g = 0; g < near_ghosts_.size(); ++g) {
+    outer_curvature_[particle_.size() + g] =
+        outer_curvature_[slot_[ghosts[near_ghosts_[g]].source]];
   }
-  curvatures_below(list);
+  curvatures_below();
   // Forces take area_: what blows off a ball of spray all around does not push it.
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     exposed_[i] =
         exposed_area(area_[i], filled_[i] + alone_, alone_, motion_[i].volume, dimensions_);
   });
@@ -193,18 +179,18 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts, const Neighbo
 /// Below the outermost layer, the mean of those of the outermost layer in reach: the own normal is
 /// too uncertain there. Under a sphere both are the same. Where only a wall's surface is in reach,
 /// the own one stays.
-void FreeSurfaceFlow::curvatures_below(const NeighbourList& list) {
+void FreeSurfaceFlow::curvatures_below() {
   const SurfaceRecord* all = surface_.data();
   const double outermost = outermost_depth_ * kernel_.smoothing_length;
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     if (own.depth <= outermost) {
       return;
     }
     Lane sum = 0, weight = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane near = kernel_.value(r);
       sum += near * gather(outer_curvature_.data(), j, &CurvatureRecord::curvature);
@@ -222,13 +208,13 @@ void FreeSurfaceFlow::curvatures_below(const NeighbourList& list) {
 /// the surface: that layer feels only 0.78 of it, so a drop swings too slowly. Of the melt's own
 /// pressure, which sound has smoothed: taken from the capillary pressure of the surface the force
 /// follows every ripple of the curvature, and a drop of 12 spacings shakes itself to pieces.
-void FreeSurfaceFlow::missing_gradients(const NeighbourList& list) {
+void FreeSurfaceFlow::missing_gradients() {
   if (!settings_.surface_tension && !settings_.recoil) {
     return;  // nothing acts on the surface, so the pressure there is zero all along it
   }
   const SurfaceRecord* all = surface_.data();
   for_each_particle(liquid_.size(), [&](std::size_t member) {
-    const std::uint32_t i = liquid_[member];
+    const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     missing_gradient_[i] = {};
     if (own.depth <= 0) {
@@ -236,8 +222,8 @@ void FreeSurfaceFlow::missing_gradients(const NeighbourList& list) {
     }
     GradientSums sums;
     Lane spread = 0;
-    for (std::size_t k = list.first[i]; k < list.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list.index[k];
+    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
+      const std::uint32_t* j = &list_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane slope = softened_slope(kernel_, r, r2);
       const Lane melt = gather(force_.data(), j, &ForceRecord::density);

@@ -77,7 +77,8 @@ ClosedFlow GasFlow::make(const Particles& metal, const Domain& domain, const Flo
   return {std::move(all), std::move(fluid), std::move(model)};
 }
 
-int GasFlow::advance(Particles& metal, const MeltProperties& properties, double dt) {
+int GasFlow::advance(Particles& metal,
+                     const std::function<MeltProperties(std::uint32_t)>& properties, double dt) {
   Particles& all = flow_.particles();
   FlowFields& fields = flow_.fields();
   std::vector<std::uint32_t> metal_at(metal_);
@@ -94,10 +95,11 @@ int GasFlow::advance(Particles& metal, const MeltProperties& properties, double 
         all.velocity[k] = {};
       }
       all.phase[k] = phase;
-      fields.viscosity[k] = properties.viscosity[i];
-      fields.tension[k] = properties.surface_tension[i];
-      fields.recoil[k] = properties.recoil[i];
-      tension = std::max(tension, phase == Phase::liquid ? properties.surface_tension[i] : 0);
+      const MeltProperties here = properties(i);
+      fields.viscosity[k] = here.viscosity;
+      fields.tension[k] = here.surface_tension;
+      fields.recoil[k] = here.recoil;
+      tension = std::max(tension, phase == Phase::liquid ? here.surface_tension : 0);
     }
   }
   // Both sides of the interface carry a surface tension; the gas takes the melt's largest.

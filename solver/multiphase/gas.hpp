@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "solver/flow/free_surface.hpp"
@@ -29,7 +30,8 @@ class GasFlow {
 
   /// Advances by dt in as many steps as the closed flow needs: takes phases and properties from the
   /// metal, gives positions, velocities and densities back. @returns the steps taken.
-  int advance(Particles& metal, const MeltProperties& properties, double dt);
+  int advance(Particles& metal, const std::function<MeltProperties(std::uint32_t)>& properties,
+              double dt);
 
   const ClosedFlow& flow() const { return flow_; }
   std::size_t gas_particles() const { return flow_.particles().size() - metal_; }

@@ -46,10 +46,9 @@ TEST(GasFlow, HoldsADropOfMetalAtTwentyTimesTheGassDensity) {
   settings.gravity = {};
   GasFlow flow(drop, box, settings, {.density_ratio = 20, .height = 3 * spacing});
   EXPECT_EQ(flow.gas_particles(), 8 * 8 * 8 - drop.size());
-  const std::size_t n = drop.size();
-  const MeltProperties melt{.viscosity = std::vector<double>(n, 0.06),
-                            .surface_tension = std::vector<double>(n, tension),
-                            .recoil = std::vector<double>(n, 0)};
+  const auto melt = [&](std::uint32_t) {
+    return MeltProperties{.viscosity = 0.06, .surface_tension = tension, .recoil = 0};
+  };
   // The drop starts without its pressure and breathes with a period of some 25 us.
   constexpr int parts = 20;
   constexpr double time = 10e-6;

@@ -63,9 +63,9 @@ void each_array(State& s, const Visit& visit) {
   visit("flow/shift", s.flow.shift, "m s-2");
   visit("flow/area", s.flow.area, "m2");
   visit("flow/pressure", s.flow.pressure, "Pa");
-  visit("melt/viscosity", s.melt.viscosity, "Pa s");
-  visit("melt/surface_tension", s.melt.surface_tension, "N m-1");
-  visit("melt/recoil", s.melt.recoil, "Pa");
+  visit("flow/viscosity", s.flow.viscosity, "Pa s");
+  visit("flow/surface_tension", s.flow.surface_tension, "N m-1");
+  visit("flow/recoil", s.flow.recoil, "Pa");
 }
 
 /// The numbers of the state that are no arrays.

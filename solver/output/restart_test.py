@@ -113,7 +113,7 @@ class Restart(unittest.TestCase):
         for place in self.checkpoints(folder):
             with h5py.File(place, "r+") as file:
                 file["provenance"].attrs["revision"] = "0123456789ab"
-                del file["melt/recoil"]
+                del file["flow/recoil"]
         done = run_case(folder, "--restart")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("was made by revision 0123456789ab", done.stderr)

@@ -7,8 +7,8 @@ Whole::Whole(const Engine& engine) {
   const bool flow = engine.model().flow.has_value();
   if (engine.ranks().alone()) {
     particles_ = &engine.particles();
-    if (flow && engine.flow().pressure().size() >= particles_->size()) {
-      pressure_ = &engine.flow().pressure();
+    for (std::uint32_t i = 0; flow && i < particles_->size(); ++i) {
+      pressure_.push_back(engine.flow().pressure(i));
     }
     return;
   }
@@ -20,7 +20,7 @@ Whole::Whole(const Engine& engine) {
     all[i].write(gathered_, i);
     gathered_.home[i] = Home::here;
     if (flow) {
-      gathered_pressure_.push_back(all[i].flow.pressure);
+      pressure_.push_back(all[i].flow.pressure);
     }
   }
 }

@@ -16,13 +16,12 @@ class Whole {
   explicit Whole(const Engine& engine);
   const Particles& particles() const { return *particles_; }
   /// Of the flow, Pa, per particle; empty without flow.
-  const std::vector<double>& pressure() const { return *pressure_; }
+  const std::vector<double>& pressure() const { return pressure_; }
 
  private:
   Particles gathered_;
-  std::vector<double> gathered_pressure_;
+  std::vector<double> pressure_;
   const Particles* particles_ = &gathered_;
-  const std::vector<double>* pressure_ = &gathered_pressure_;
 };
 
 }  // namespace meltproof::solver

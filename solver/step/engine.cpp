@@ -180,7 +180,7 @@ void Engine::check_numbers() const {
       if (!std::isfinite(v[0] + v[1] + v[2] + x[0] + x[1] + x[2] + particles_.density[i])) {
         throw std::runtime_error(
             fmt::format("{}: the motion is not a number; the first term that is none: {}", where(i),
-                        flow_->diagnose(particles_, i, melt_)));
+                        flow_->diagnose(particles_, i)));
       }
     }
   }

@@ -208,7 +208,6 @@ class Engine {
 
   std::optional<FreeSurfaceFlow> flow_;
   std::optional<GasFlow> gas_;
-  MeltProperties melt_;
   std::vector<std::uint8_t> mobile_;
   std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built
   std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;

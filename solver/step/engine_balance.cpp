@@ -122,7 +122,7 @@ void Engine::divide_anew(bool sort) {
   particles_.each_array([&](auto& values) { values.assign(own.size(), {}); });
   free_.clear();
   fit_fields();
-  flow_->fit(own.size());
+  flow_->forget();
   for (std::uint32_t i = 0; i < own.size(); ++i) {
     unpack(i, own[i], own[i].rank == ranks().rank() ? Home::here : Home::elsewhere);
     flow_->set_particle(i, own[i].flow);

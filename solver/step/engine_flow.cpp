@@ -19,15 +19,11 @@ constexpr std::size_t builds_between_sorts = 256;
 }  // namespace
 
 void Engine::start_flow() {
-  const std::size_t n = particles_.size();
-  for (auto* field : {&melt_.viscosity, &melt_.surface_tension, &melt_.recoil}) {
-    field->assign(n, 0.0);
-  }
   change_phases();
   rebuild_lists(true);
   refresh_melt();
-  flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
-  flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
+  flow_->set_properties(particles_, ghosts_);
+  flow_->evaluate(particles_, ghosts_);
   if (model_.gas) {
     gas_.emplace(particles_, model_.domain, flow_->settings(), *model_.gas);
   }
@@ -35,12 +31,13 @@ void Engine::start_flow() {
 
 /// The closed flow moves the melt; the free surface's interface then says how much of it is bare.
 void Engine::advance_gas(double dt) {
-  flow_count_ += static_cast<std::size_t>(gas_->advance(particles_, melt_, dt));
+  flow_count_ += static_cast<std::size_t>(gas_->advance(
+      particles_, [&](std::uint32_t i) { return flow_->properties(i); }, dt));
   if (farthest_moved() > neighbours_.skin() / 2) {
     rebuild_lists(false);
   }
-  flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
-  flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
+  flow_->set_properties(particles_, ghosts_);
+  flow_->evaluate(particles_, ghosts_);
 }
 
 void Engine::set_state(const std::vector<Vector>& velocity, const std::vector<double>& density) {
@@ -50,8 +47,8 @@ void Engine::set_state(const std::vector<Vector>& velocity, const std::vector<do
     particles_.velocity[i] = velocity[id];
     particles_.density[i] = density[id];
   }
-  flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
-  flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
+  flow_->set_properties(particles_, ghosts_);
+  flow_->evaluate(particles_, ghosts_);
 }
 
 double Engine::largest_speed() const {
@@ -98,7 +95,7 @@ void Engine::report_unstable(std::uint32_t particle, double moved) const {
       "larger flow.viscosity_factor or flow.sound_speed, or the default flow.clumping_cure, may "
       "hold it",
       steps_, time_, particles_.identity[particle], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2],
-      moved / particles_.spacing, flow_->diagnose(particles_, particle, melt_)));
+      moved / particles_.spacing, flow_->diagnose(particles_, particle)));
 }
 
 /// Melts and freezes; takes out what left the domain. @returns whether any phase changed.
@@ -203,18 +200,16 @@ void Engine::refresh_melt() {
   const FlowSettings& settings = flow_->settings();
   const double ambient = model_.surface_loss ? model_.surface_loss->ambient_pressure
                                              : SurfaceLossSettings{}.ambient_pressure;
-  const auto refresh_one = [&](std::uint32_t i) {
+  flow_->set_melt([&](std::uint32_t i) {
     const double temperature = particles_.temperature[i],
                  concentration = particles_.concentration[i];
-    melt_.surface_tension[i] = mixture_.surface_tension(temperature, concentration);
-    melt_.viscosity[i] = settings.viscosity_factor * mixture_.viscosity(temperature, concentration);
-    melt_.recoil[i] = settings.recoil && temperature > 1000
-                          ? recoil_pressure(temperature, concentration, mixture_, ambient)
-                          : 0;
-  };
-  for (const auto* members : flow_->near_melt()) {
-    for_each_particle(members->size(), [&](std::size_t k) { refresh_one((*members)[k]); });
-  }
+    return MeltProperties{
+        .viscosity = settings.viscosity_factor * mixture_.viscosity(temperature, concentration),
+        .surface_tension = mixture_.surface_tension(temperature, concentration),
+        .recoil = settings.recoil && temperature > 1000
+                      ? recoil_pressure(temperature, concentration, mixture_, ambient)
+                      : 0};
+  });
 }
 
 /// In a periodic domain the melt's particles stay between the faces.
@@ -235,6 +230,7 @@ void Engine::keep_in_period() {
 void Engine::sort_particles() {
   if (ranks().alone()) {
     sort_in_space(particles_, 3 * kernel_.smoothing_length);
+    flow_->forget();
   } else {
     costs_ = unit_costs();
     divide_anew(true);
@@ -272,8 +268,7 @@ void Engine::rebuild_lists(bool everything) {
   }
   ++list_builds_;
   ++builds_since_sort_;
-  flow_->arrange(particles_, ghosts_, neighbours_.list(), everything || !ghosts_.empty(),
-                 moved.entries);
+  flow_->arrange(particles_, ghosts_, neighbours_.list());
   built_at_ = particles_.position;
   place_records();
   if (everything) {
@@ -306,21 +301,21 @@ void Engine::advance_flow(double dt, int steps) {
     if (ranks().any(unlisted)) {
       rebuild_lists(false);
     } else {
-      flow_->arrange(particles_, ghosts_, neighbours_.list(), !ghosts_.empty());
+      flow_->arrange(particles_, ghosts_, neighbours_.list());
     }
   }
   if (builds_since_sort_ > builds_between_sorts) {
     rebuild_lists(true);
     refresh_melt();
-    flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
-    flow_->evaluate(particles_, ghosts_, neighbours_.list(), melt_);
+    flow_->set_properties(particles_, ghosts_);
+    flow_->evaluate(particles_, ghosts_);
   }
   watch.lap(times_.lists);
   if (!ranks().any(!flow_->liquid().empty())) {
     return;
   }
   refresh_melt();
-  flow_->set_properties(particles_, ghosts_, neighbours_.list(), melt_);
+  flow_->set_properties(particles_, ghosts_);
   if (gas_) {
     advance_gas(dt);
     place_records();
@@ -340,7 +335,7 @@ void Engine::advance_flow(double dt, int steps) {
     } else {
       flow_->follow(particles_);
     }
-    flow_->finish(particles_, ghosts_, neighbours_.list(), melt_, small);
+    flow_->finish(particles_, ghosts_, small);
     watch.lap(times_.flow);
   }
   place_records();

@@ -88,9 +88,6 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   // What an engine that goes on from a state knows beside.
   select_if_there(mobile_, kept);
   select_if_there(built_at_, kept);
-  for (auto* field : {&melt_.viscosity, &melt_.surface_tension, &melt_.recoil}) {
-    select_if_there(*field, kept);
-  }
   add_free_slots();
   note_peers(places);
   return kept;
@@ -111,9 +108,8 @@ void Engine::add_free_slots() {
 /// Every field of the engine as long as the particles' arrays.
 void Engine::fit_fields() {
   const std::size_t n = particles_.size();
-  for (auto* field :
-       {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_, &absorptivity_,
-        &loss_area_, &melt_.viscosity, &melt_.surface_tension, &melt_.recoil}) {
+  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
+                      &absorptivity_, &loss_area_}) {
     field->resize(n, 0.0);
   }
   mobile_.resize(n, 0);
@@ -179,12 +175,7 @@ Traveller Engine::pack(std::uint32_t i) const {
   t.freeze_gradient = p.freeze_gradient[i];
   t.listed_at = flow_ ? built_at_[i] : p.position[i];
   if (flow_) {
-    t.viscosity = melt_.viscosity[i];
-    t.surface_tension = melt_.surface_tension[i];
-    t.recoil = melt_.recoil[i];
-    if (flow_->arranged()) {
-      t.flow = flow_->particle(i);
-    }
+    t.flow = flow_->particle(i);
   }
   t.origin = p.origin[i];
   t.rank = halo_->ranks().rank();
@@ -199,9 +190,6 @@ void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
   particles_.home[i] = home;
   mobile_[i] = t.mobile;
   built_at_[i] = t.listed_at;
-  melt_.viscosity[i] = t.viscosity;
-  melt_.surface_tension[i] = t.surface_tension;
-  melt_.recoil[i] = t.recoil;
 }
 
 std::uint32_t Engine::free_slot() {
@@ -262,7 +250,6 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
       left.erase(known);
     }
     unpack(i, t, home);
-    flow_->fit(particles_.size());
     flow_->set_particle(i, t.flow);
     moved.entries.push_back(i);
     moved.arrived.push_back(i);

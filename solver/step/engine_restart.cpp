@@ -21,14 +21,14 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
     p.home[i] = Home::here;
     state.listed_at.push_back(t.listed_at);
     state.mobile.push_back(t.mobile);
-    state.melt.viscosity.push_back(t.viscosity);
-    state.melt.surface_tension.push_back(t.surface_tension);
-    state.melt.recoil.push_back(t.recoil);
     if (t.phase == Phase::liquid) {
       state.flow.acceleration.push_back(t.flow.acceleration);
       state.flow.shift.push_back(t.flow.shift);
       state.flow.area.push_back(t.flow.exposed);
       state.flow.pressure.push_back(t.flow.pressure);
+      state.flow.viscosity.push_back(t.flow.properties.viscosity);
+      state.flow.surface_tension.push_back(t.flow.properties.surface_tension);
+      state.flow.recoil.push_back(t.flow.properties.recoil);
     }
   }
 }
@@ -52,6 +52,9 @@ FlowMemory part_of(const FlowMemory& memory, const std::vector<Phase>& phases,
       part.shift.push_back(memory.shift[at]);
       part.area.push_back(memory.area[at]);
       part.pressure.push_back(memory.pressure[at]);
+      part.viscosity.push_back(memory.viscosity[at]);
+      part.surface_tension.push_back(memory.surface_tension[at]);
+      part.recoil.push_back(memory.recoil[at]);
     }
   }
   return part;
@@ -72,7 +75,6 @@ EngineState Engine::state(bool everywhere) const {
     state.mobile = mobile_;
     if (flow_) {
       state.flow = flow_->memory();
-      state.melt = melt_;
     }
   } else {
     write_particles(state, gather({}, everywhere));
@@ -121,7 +123,6 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
       ledger_(state.ledger),
       time_(state.time),
       steps_(state.steps),
-      melt_(std::move(state.melt)),
       mobile_(std::move(state.mobile)),
       built_at_(std::move(state.listed_at)),
       flow_count_(state.flow_steps),
@@ -151,7 +152,7 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   prepare();
   particles_.position = now;
   if (flow_) {
-    flow_->arrange(particles_, ghosts_, neighbours_.list(), true);
+    flow_->arrange(particles_, ghosts_, neighbours_.list());
   }
   place_records();
   for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });

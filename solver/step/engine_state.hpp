@@ -31,7 +31,6 @@ struct EngineState {
   std::vector<Vector> listed_at;     ///< m, places of the particles when the lists were made
   std::vector<std::uint8_t> mobile;  ///< 1 for those that counted as moving then
   FlowMemory flow;                   ///< of the last evaluation of the forces; empty without flow
-  MeltProperties melt;               ///< of the last thermal step; empty without flow
   LimiterCounts limiters;            ///< so far
   EnergyLedger ledger;               ///< so far
   StepLimits limits;                 ///< of the last step

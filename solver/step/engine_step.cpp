@@ -30,8 +30,10 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
     extreme[melt] = flow_->liquid().empty() ? 0 : 1;
     extreme[speed] = largest_speed();
     for (const std::uint32_t i : flow_->liquid()) {
-      extreme[viscosity] = std::max(extreme[viscosity], melt_.viscosity[i] / particles_.density[i]);
-      extreme[tension] = std::max(extreme[tension], melt_.surface_tension[i]);
+      const MeltProperties melt_here = flow_->properties(i);
+      extreme[viscosity] =
+          std::max(extreme[viscosity], melt_here.viscosity / particles_.density[i]);
+      extreme[tension] = std::max(extreme[tension], melt_here.surface_tension);
       extreme[density] = std::max(extreme[density], -particles_.density[i]);
     }
   }

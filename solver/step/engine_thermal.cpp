@@ -123,7 +123,7 @@ double Engine::lose_surface_heat() {
       }
     }
     for (const std::uint32_t i : flow_->liquid()) {
-      loss_area_[i] = flow_->area()[i];
+      loss_area_[i] = flow_->area(i);
     }
     loss_ = lose_heat(particles_, loss_area_, mixture_, *model_.surface_loss, source_, ranks());
   } else {

@@ -16,7 +16,6 @@ struct alignas(8) Traveller {
   Vector position, velocity, listed_at;
   double mass, volume, density, enthalpy, concentration, temperature, liquid_fraction,
       peak_temperature, melt_time, freeze_time, cooling_rate, freeze_gradient;
-  double viscosity, surface_tension, recoil;
   FlowParticle flow;
   Origin origin;
   std::int32_t rank;  ///< that sent it

@@ -85,7 +85,7 @@ VerificationRun run_hydrostatic_free(const VerificationCase& c, double spacing) 
   double worst = 0;
   for (const std::uint32_t i : engine.flow().liquid()) {
     run.position.push_back(particles.position[i][2]);
-    run.value.push_back(engine.flow().pressure()[i]);
+    run.value.push_back(engine.flow().pressure(i));
     run.exact.push_back(exact(particles.position[i]));
     worst = std::max(worst, std::abs(run.value.back() - run.exact.back()) / weight);
   }
@@ -152,7 +152,7 @@ VerificationRun run_recoil_flat(const VerificationCase& c, double spacing) {
       const double z = engine.particles().position[p][2];
       const auto bin = static_cast<std::size_t>(
           std::clamp(z / spacing, 0.0, static_cast<double>(sum.size()) - 1));
-      sum[bin] += engine.flow().pressure()[p];
+      sum[bin] += engine.flow().pressure(p);
       ++count[bin];
     }
   }
@@ -230,7 +230,7 @@ VerificationRun run_thermocapillary_layer(const VerificationCase& c, double spac
       if (!in_the_middle(at)) {
         continue;
       }
-      area += engine.flow().area()[p];
+      area += engine.flow().area(p);
       Bin& bin = bins[static_cast<std::size_t>(
           std::clamp(at[up] / spacing, 0.0, static_cast<double>(deep) - 1))];
       bin.height += at[up];

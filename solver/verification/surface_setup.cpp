@@ -150,7 +150,7 @@ MeanPressure mean_pressure(const Engine& engine, const std::function<bool(const 
     }
     const double own = particles.mass[i] / particles.density[i];
     volume += own;
-    mean.state += own * engine.flow().pressure()[i];
+    mean.state += own * engine.flow().pressure(i);
     double virial = 0;
     for (std::size_t k = list.first[i]; k < list.last[i] && strength > 0; ++k) {
       const std::uint32_t j = list.index[k];
