@@ -54,7 +54,7 @@ DevelopedPool develop_pool(const TrackCase& track, double until) {
   }
   const NeighbourList& list = engine.neighbours();
   pool.neighbours = list.mean_neighbours();
-  pool.list_bytes = static_cast<double>(list.index.capacity() * sizeof(list.index[0])) /
+  pool.list_bytes = static_cast<double>(list.index.size() * sizeof(list.index[0])) /
                     static_cast<double>(particles);
   return pool;
 }

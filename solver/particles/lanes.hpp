@@ -20,19 +20,28 @@ using Lane = std::experimental::native_simd<double>;
 inline constexpr std::size_t lane_count = Lane::size();
 
 inline double positive_part(double value) { return value > 0 ? value : 0; }
-[[gnu::always_inline]] inline Lane positive_part(const Lane& value) { return std::experimental::max(value, Lane(0.0)); }
+[[gnu::always_inline]] inline Lane positive_part(const Lane& value) {
+  return std::experimental::max(value, Lane(0.0));
+}
 inline double larger(double a, double b) { return a > b ? a : b; }
-[[gnu::always_inline]] inline Lane larger(const Lane& a, const Lane& b) { return std::experimental::max(a, b); }
+[[gnu::always_inline]] inline Lane larger(const Lane& a, const Lane& b) {
+  return std::experimental::max(a, b);
+}
 inline double smaller(double a, double b) { return a < b ? a : b; }
-[[gnu::always_inline]] inline Lane smaller(const Lane& a, const Lane& b) { return std::experimental::min(a, b); }
+[[gnu::always_inline]] inline Lane smaller(const Lane& a, const Lane& b) {
+  return std::experimental::min(a, b);
+}
 inline double square_root(double value) { return std::sqrt(value); }
-[[gnu::always_inline]] inline Lane square_root(const Lane& value) { return std::experimental::sqrt(value); }
+[[gnu::always_inline]] inline Lane square_root(const Lane& value) {
+  return std::experimental::sqrt(value);
+}
 
 /// `value` where `test` is positive, `other` elsewhere.
 inline double where_positive(double test, double value, double other) {
   return test > 0 ? value : other;
 }
-[[gnu::always_inline]] inline Lane where_positive(const Lane& test, const Lane& value, const Lane& other) {
+[[gnu::always_inline]] inline Lane where_positive(const Lane& test, const Lane& value,
+                                                  const Lane& other) {
   Lane result = other;
   std::experimental::where(test > 0.0, result) = value;
   return result;
@@ -49,7 +58,8 @@ inline double sum_lanes(const Lane& value) {
 
 /// One field of the records that `index` names, one record a lane.
 template <class Record>
-[[gnu::always_inline]] inline Lane gather(const Record* records, const std::uint32_t* index, double Record::*field) {
+[[gnu::always_inline]] inline Lane gather(const Record* records, const std::uint32_t* index,
+                                          double Record::*field) {
   return Lane([&](auto lane) { return records[index[lane]].*field; });
 }
 
@@ -91,8 +101,8 @@ template <std::size_t Step = 1, class Number, std::size_t Count>
 
 /// **All fields of the records that `index` names**, one record a lane. A record is a template over
 /// its number type, filled up to eight doubles or a multiple; what comes back is the same record of
-/// lanes. Whole records are read and rows turned into columns; in the pair loop of bench/ that takes
-/// 0.85 of the time of collecting field by field (eight lanes). The numbers are the same.
+/// lanes. Whole records are read and rows turned into columns; in the pair loop of bench/ that
+/// takes 0.85 of the time of collecting field by field (eight lanes). The numbers are the same.
 template <template <class> class Fields>
 [[gnu::always_inline]] inline Fields<Lane> gather_records(const Fields<double>* records,
                                                           const std::uint32_t* index) {

@@ -10,6 +10,9 @@
 
 namespace meltproof::solver {
 
+struct Points;
+struct CellGrid;
+
 /// For every particle the indices of its neighbours without itself: particles count from 0, ghosts
 /// follow behind them, and the void record, which takes part in nothing, is the last index. Each
 /// list is in the order of Particles::before(), that is in space-filling order, and padded with the
@@ -33,7 +36,7 @@ NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghos
 /// **Verlet lists of particles of which a few move.** A pair is listed up to `support` if both
 /// stand still and up to `support + skin` if either may move, so lists stay right until the two
 /// fastest particles together have moved by the skin. rebuild() remakes only the lists near moving
-/// particles; the others, which cannot have changed, stay.
+/// particles, and once more those that they have left; the others, which cannot have changed, stay.
 class MovingNeighbours {
  public:
   /// @param support of the kernel, m; @param skin m.
@@ -43,27 +46,30 @@ class MovingNeighbours {
   /// rebuild.
   void build(const Particles& particles, const std::vector<Ghost>& ghosts,
              const std::vector<std::uint8_t>& mobile);
-  /// Remakes the lists of the particles that have, or since build() had, a mobile particle within
-  /// reach. Indices must not have changed since build(), but that particles may have been added
-  /// behind; with ghosts it makes every list. @param arrived from other ranks since the last call.
+  /// Remakes the lists of the particles that have a mobile particle within reach, or had one when
+  /// lists were last made. Indices must not have changed since build(), but that particles may have
+  /// been added behind or have come to an entry that was free; with ghosts it makes every list.
+  /// @param arrived from other ranks since the last call.
   void rebuild(const Particles& particles, const std::vector<Ghost>& ghosts,
                const std::vector<std::uint8_t>& mobile,
                const std::vector<std::uint32_t>& arrived = {});
 
   const NeighbourList& list() const { return list_; }
   double skin() const { return skin_; }
-  /// Particles whose lists rebuild() remakes.
+  /// Particles that had a mobile one within reach when lists were last made.
   std::size_t remade() const { return remade_.size(); }
 
  private:
   void make(const Particles& particles, const std::vector<Ghost>& ghosts,
-            const std::vector<std::uint8_t>& mobile, bool all);
+            const std::vector<std::uint8_t>& mobile, const std::vector<std::uint32_t>& arrived,
+            bool all);
+  std::vector<std::uint8_t> find_touched(const Points& points, const CellGrid& grid,
+                                         const std::vector<std::uint8_t>& mobile);
 
   double support_, skin_;
   NeighbourList list_;
-  std::size_t kept_ = 0;               // entries of list_.index that build() made
-  std::vector<std::uint8_t> touched_;  // had a mobile particle within reach since build()
-  std::vector<std::uint32_t> remade_;
+  std::size_t kept_ = 0;               // entries of list_.index that the next rebuild() leaves
+  std::vector<std::uint32_t> remade_;  // whose lists it remakes
 };
 
 /// A position that is outside the support of every kernel but whose distances stay finite, for the

@@ -77,35 +77,48 @@ void Engine::prepare() {
   }
 }
 
-/// Positions and volumes of the records: once for fixed particles, every thermal step for moving
-/// ones.
+/// Positions and volumes of the records, of everybody: where indices or images have changed.
 void Engine::place_records() {
   const std::size_t n = particles_.size(), all = neighbours_.list().void_index + std::size_t{1};
   heat_records_.resize(all);
   species_records_.resize(all);
-  const auto place = [&](std::size_t at, std::size_t source, const Vector& position) {
-    const double volume = particles_.volume[source];
-    auto& heat = heat_records_[at];
-    auto& species = species_records_[at];
-    if (particles_.phase[source] == Phase::lost || particles_.home[source] == Home::nowhere) {
-      heat = {};
-      species = {};
-      return;
-    }
-    heat.x = species.x = position[0];
-    heat.y = species.y = position[1];
-    heat.z = species.z = position[2];
-    heat.volume = species.volume = volume;
-    species.density = particles_.mass[source] / volume;
-  };
-  for_each_particle(n, [&](std::size_t i) { place(i, i, particles_.position[i]); });
-  for (std::size_t g = 0; g < ghosts_.size(); ++g) {
-    const std::uint32_t source = ghosts_[g].source;
-    place(n + g, source, ghosts_[g].image_of(particles_.position[source]));
-  }
+  for_each_particle(n, [&](std::size_t i) { place_record(i, i, particles_.position[i]); });
+  place_images();
   heat_records_.back() = {};
   heat_records_.back().awake = 0;
   species_records_.back() = {};
+}
+
+void Engine::place_record(std::size_t at, std::size_t source, const Vector& position) {
+  const double volume = particles_.volume[source];
+  auto& heat = heat_records_[at];
+  auto& species = species_records_[at];
+  if (particles_.phase[source] == Phase::lost || particles_.home[source] == Home::nowhere) {
+    heat = {};
+    species = {};
+    return;
+  }
+  heat.x = species.x = position[0];
+  heat.y = species.y = position[1];
+  heat.z = species.z = position[2];
+  heat.volume = species.volume = volume;
+  species.density = particles_.mass[source] / volume;
+}
+
+void Engine::place_images() {
+  const std::size_t n = particles_.size();
+  for (std::size_t g = 0; g < ghosts_.size(); ++g) {
+    const std::uint32_t source = ghosts_[g].source;
+    place_record(n + g, source, ghosts_[g].image_of(particles_.position[source]));
+  }
+}
+
+/// The same of those who may have moved, or been lost, since the lists were made.
+void Engine::place_moving_records() {
+  for_each_particle(movers_.size(), [&](std::size_t k) {
+    place_record(movers_[k], movers_[k], particles_.position[movers_[k]]);
+  });
+  place_images();
 }
 
 double Engine::total_of(const std::vector<double>& specific) const {

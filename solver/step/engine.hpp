@@ -135,6 +135,9 @@ class Engine {
   void fill_species_records(const std::vector<double>& concentration);
   void advance_species(double dt);
   void place_records();
+  void place_moving_records();
+  void place_record(std::size_t at, std::size_t source, const Vector& position);
+  void place_images();
   double lose_surface_heat();
   struct Step {
     double size = 0, end = 0;  // s
@@ -150,6 +153,7 @@ class Engine {
   void copy_phases();
   void refresh_melt();
   void rebuild_lists(bool everything);
+  void find_movers();
   void sort_particles();
   void keep_in_period();
   void advance_flow(double dt, int steps);
@@ -208,7 +212,8 @@ class Engine {
 
   std::optional<FreeSurfaceFlow> flow_;
   std::optional<GasFlow> gas_;
-  std::vector<std::uint8_t> mobile_;
+  std::vector<std::uint8_t> mobile_;   // when the lists were made: moves, or may begin to
+  std::vector<std::uint32_t> movers_;  // those
   std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built
   std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;
   StepTimes times_, times_at_balance_;

@@ -238,6 +238,15 @@ void Engine::sort_particles() {
   builds_since_sort_ = 0;
 }
 
+void Engine::find_movers() {
+  movers_.clear();
+  for (std::uint32_t i = 0; i < mobile_.size(); ++i) {
+    if (mobile_[i] != 0) {
+      movers_.push_back(i);
+    }
+  }
+}
+
 void Engine::rebuild_lists(bool everything) {
   keep_in_period();
   if (everything) {
@@ -270,7 +279,17 @@ void Engine::rebuild_lists(bool everything) {
   ++builds_since_sort_;
   flow_->arrange(particles_, ghosts_, neighbours_.list());
   built_at_ = particles_.position;
-  place_records();
+  if (everything || !ghosts_.empty()) {
+    find_movers();
+    place_records();
+  } else {
+    place_moving_records();  // of those who have been lost since then, too
+    find_movers();
+    place_moving_records();
+    for (const std::uint32_t i : moved.entries) {
+      place_record(i, i, particles_.position[i]);
+    }
+  }
   if (everything) {
     // Everybody has a new index: what was kept by the old ones is made afresh.
     liquid_.clear();
@@ -318,7 +337,7 @@ void Engine::advance_flow(double dt, int steps) {
   flow_->set_properties(particles_, ghosts_);
   if (gas_) {
     advance_gas(dt);
-    place_records();
+    place_moving_records();
     watch.lap(times_.flow);
     return;
   }
@@ -338,7 +357,7 @@ void Engine::advance_flow(double dt, int steps) {
     flow_->finish(particles_, ghosts_, small);
     watch.lap(times_.flow);
   }
-  place_records();
+  place_moving_records();
   watch.lap(times_.lists);
 }
 

@@ -189,7 +189,6 @@ void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
   t.write(particles_, i);
   particles_.home[i] = home;
   mobile_[i] = t.mobile;
-  built_at_[i] = t.listed_at;
 }
 
 std::uint32_t Engine::free_slot() {

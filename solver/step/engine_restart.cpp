@@ -155,6 +155,7 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
     flow_->arrange(particles_, ghosts_, neighbours_.list());
   }
   place_records();
+  find_movers();
   for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (flow_) {

@@ -2,19 +2,93 @@
 #include "solver/terms/conduction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <optional>
 
+#include "solver/particles/cell_grid.hpp"
 #include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
+
+namespace {
+
+/// Cells as large as the lists reach, marked where somebody is awake, there or next to it: most of
+/// the metal sleeps far from that, and need not look through its list.
+class AwakeCells {
+ public:
+  AwakeCells(const std::vector<HeatRecord>& records, double reach) : size_(reach) {
+    Box box;
+    for (const HeatRecord& r : records) {
+      if (r.awake > 0 && r.x < void_position) {
+        box.add({r.x, r.y, r.z});
+      }
+    }
+    if (!(box.lower[0] <= box.upper[0])) {
+      return;
+    }
+    for (std::size_t d = 0; d < 3; ++d) {
+      lower_[d] = box.lower[d] - size_;
+      count_[d] = 3 + static_cast<std::size_t>((box.upper[d] - box.lower[d]) / size_);
+    }
+    marked_.assign(count_[0] * count_[1] * count_[2], 0);
+    for (const HeatRecord& r : records) {
+      if (r.awake > 0 && r.x < void_position) {
+        marked_[*cell(r)] = 1;
+      }
+    }
+    spread(1, count_[0]);
+    spread(count_[0], count_[1]);
+    spread(count_[0] * count_[1], count_[2]);
+  }
+  bool near(const HeatRecord& r) const {
+    const auto c = cell(r);
+    return c && marked_[*c] != 0;
+  }
+
+ private:
+  std::optional<std::size_t> cell(const HeatRecord& r) const {
+    const std::array<double, 3> at{(r.x - lower_[0]) / size_, (r.y - lower_[1]) / size_,
+                                   (r.z - lower_[2]) / size_};
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (!(at[d] >= 0 && at[d] < static_cast<double>(count_[d]))) {
+        return {};
+      }
+    }
+    return (static_cast<std::size_t>(at[2]) * count_[1] + static_cast<std::size_t>(at[1])) *
+               count_[0] +
+           static_cast<std::size_t>(at[0]);
+  }
+  /// To both neighbours along one axis, whose cells are `stride` apart.
+  void spread(std::size_t stride, std::size_t count) {
+    const std::vector<std::uint8_t> before = marked_;
+    for (std::size_t c = 0; c < marked_.size(); ++c) {
+      const std::size_t place = c / stride % count;
+      const bool marked = before[c] != 0 || (place > 0 && before[c - stride] != 0) ||
+                          (place + 1 < count && before[c + stride] != 0);
+      marked_[c] = marked ? 1 : 0;
+    }
+  }
+
+  double size_;
+  Vector lower_{};
+  std::array<std::size_t, 3> count_{0, 0, 0};
+  std::vector<std::uint8_t> marked_;
+};
+
+}  // namespace
 
 void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
                 std::vector<std::uint32_t>& active) {
   const std::size_t n = neighbours.last.size();
   std::vector<std::uint8_t> involved(n, 0);
+  const AwakeCells cells(records, neighbours.reach);
   for_each_particle(n, [&](std::size_t i) {
     if (records[i].awake > 0) {
       involved[i] = 1;
+      return;
+    }
+    if (!cells.near(records[i])) {
       return;
     }
     for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; ++k) {
