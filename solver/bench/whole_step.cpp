@@ -80,8 +80,8 @@ NothingSkipped skip_nothing(const DevelopedPool& pool) {
   // a start without sleep the engine says that no temperature is the start's.
   all.state.start_temperature = -1e9;
   all.model.flow_steps = 1;
-  // Lists that once had a moving particle near are remade with all others; so all have.
-  all.state.mobile.assign(all.state.mobile.size(), 1);
+  all.model.multirate = false;
+  all.model.keep_lists = false;
   return all;
 }
 

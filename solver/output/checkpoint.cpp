@@ -59,6 +59,8 @@ void each_array(State& s, const Visit& visit) {
   visit("melted", p.melted, "1");
   visit("listed_at", s.listed_at, "m");
   visit("mobile", s.mobile, "1");
+  visit("fast", s.fast, "1");
+  visit("slow_power", s.slow_power, "W m-3");
   visit("flow/acceleration", s.flow.acceleration, "m s-2");
   visit("flow/shift", s.flow.shift, "m s-2");
   visit("flow/area", s.flow.area, "m2");
@@ -78,6 +80,7 @@ void each_number(State& s, const Visit& visit) {
   visit("limits", s.limits);
   visit("times", s.times);
   visit("time", s.time);
+  visit("round_time", s.round_time);
   visit("start_temperature", s.start_temperature);
   visit("steps", s.steps);
   visit("flow_steps", s.flow_steps);

@@ -56,8 +56,9 @@ class MovingNeighbours {
 
   const NeighbourList& list() const { return list_; }
   double skin() const { return skin_; }
-  /// Particles that had a mobile one within reach when lists were last made.
-  std::size_t remade() const { return remade_.size(); }
+  /// The particles of this rank that had a mobile one within reach, or were mobile, when lists were
+  /// last made.
+  const std::vector<std::uint32_t>& near_moving() const { return remade_; }
 
  private:
   void make(const Particles& particles, const std::vector<Ghost>& ghosts,

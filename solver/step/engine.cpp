@@ -66,6 +66,8 @@ void Engine::prepare() {
                       &absorptivity_, &loss_area_}) {
     field->assign(particles_.size(), 0.0);
   }
+  slow_power_.resize(particles_.size(), 0.0);
+  fast_.resize(particles_.size(), 0);
   if (model_.flow) {
     flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions, *halo_);
   }
@@ -158,6 +160,7 @@ void Engine::refresh(std::size_t i) {
   absorptivity_[i] = mixture_.absorptivity(concentration);
   heat_records_[i].temperature = temperature;
   heat_records_[i].conductivity = conductivity;
+  heat_records_[i].fast = fast_[i];
   heat_records_[i].awake = std::abs(temperature - start_temperature_) > model_.sleep_below ? 1 : 0;
 }
 
@@ -169,6 +172,7 @@ void Engine::refresh_ghosts() {
         ghost.sign * particles_.temperature[ghost.source] + ghost.offset;
     heat_records_[n + g].conductivity = heat_records_[ghost.source].conductivity;
     heat_records_[n + g].awake = heat_records_[ghost.source].awake;
+    heat_records_[n + g].fast = heat_records_[ghost.source].fast;
   });
 }
 

@@ -55,6 +55,12 @@ struct Model {
   std::optional<GasSettings> gas;
   /// With flow: acoustic steps in a thermal one, at most.
   int flow_steps = 10;
+  /// With flow: metal whose temperature changes slowly conducts heat in steps as long as conduction
+  /// allows, see exchange_heat(); false: in every step.
+  bool multirate = true;
+  /// False: all neighbour lists are remade each time, those of what cannot have changed, too; for
+  /// measuring what is gained.
+  bool keep_lists = true;
   /// With flow: a liquid particle becomes wall below this liquid fraction; melting needs 1. The
   /// difference keeps particles at the liquidus from changing phase every step.
   double freezing_fraction = 0.98;
@@ -106,6 +112,8 @@ class Engine {
   const StepTimes& times() const { return times_; }
   std::size_t flow_steps() const { return flow_count_; }  ///< acoustic steps so far
   std::size_t list_builds() const { return list_builds_; }
+  /// Particles whose conduction was summed so far, on this rank.
+  std::uint64_t heat_evaluations() const { return heat_evaluations_; }
   /// What limited the flow on all ranks so far; collective.
   LimiterCounts limiters() const;
   /// What a step takes with ranks that wait for each other after each part, over what it would with
@@ -134,6 +142,10 @@ class Engine {
   void check_numbers() const;
   void fill_species_records(const std::vector<double>& concentration);
   void advance_species(double dt);
+  void exchange_heat(double dt, double longest);
+  void open_round(double longest);
+  void find_boundary();
+  void apply(double dt);
   void place_records();
   void place_moving_records();
   void place_record(std::size_t at, std::size_t source, const Vector& position);
@@ -141,11 +153,18 @@ class Engine {
   double lose_surface_heat();
   struct Step {
     double size = 0, end = 0;  // s
+    double round = 0;          // s, longest one of heat steps
     int flow_steps = 1;
     StepLimits limits;
   };
   Step choose_step(double until, double surface_rate) const;
-  void note_phase_times(std::size_t i, double old_enthalpy, double old_temperature, double dt);
+  /// What crosses its liquidus within a step.
+  struct Crossing {
+    std::uint32_t particle;
+    double old_enthalpy, old_temperature;  ///< J kg-1, K
+    double begin, size;                    ///< s, of the step
+  };
+  void note_phase_times(const Crossing& crossing);
 
   // Flow, in engine_flow.cpp
   void start_flow();
@@ -200,8 +219,15 @@ class Engine {
   std::vector<HeatRecord> heat_records_;
   std::vector<SpeciesRecord> species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
-      half_step_, loss_area_, old_enthalpy_, old_temperature_;
-  std::vector<std::uint32_t> liquid_, heat_active_;
+      half_step_, loss_area_;
+  std::vector<std::uint32_t> liquid_;
+  // Of a round of steps, see exchange_heat(). Who conducts in this step; slow ones beside those.
+  std::vector<std::uint32_t> heat_active_, boundary_;
+  std::vector<std::uint8_t> fast_;
+  std::vector<double> slow_power_;  // W m-3, that slow ones exchange among themselves
+  double round_time_ = 0;           // s, so far
+  std::uint64_t heat_evaluations_ = 0;
+  bool round_open_ = false, round_closes_ = false, boundary_stale_ = true, sort_due_ = false;
   double start_temperature_ = 0;  // K, of a domain that begins at one temperature
   StepLimits limits_;
   LaserBudget beam_;

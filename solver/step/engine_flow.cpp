@@ -11,12 +11,6 @@
 #include "solver/step/stopwatch.hpp"
 
 namespace meltproof::solver {
-namespace {
-
-/// After so many remade lists the particles are put in order again and all lists are made afresh.
-constexpr std::size_t builds_between_sorts = 256;
-
-}  // namespace
 
 void Engine::start_flow() {
   change_phases();
@@ -270,11 +264,12 @@ void Engine::rebuild_lists(bool everything) {
   }
   slots_added_ = false;
   ghosts_ = make_ghosts(particles_, model_.domain, kernel_.support() + neighbours_.skin());
-  if (everything) {
+  if (everything || !model_.keep_lists) {
     neighbours_.build(particles_, ghosts_, mobile_);
   } else {
     neighbours_.rebuild(particles_, ghosts_, mobile_, moved.arrived);
   }
+  boundary_stale_ = true;
   ++list_builds_;
   ++builds_since_sort_;
   flow_->arrange(particles_, ghosts_, neighbours_.list());
@@ -323,7 +318,7 @@ void Engine::advance_flow(double dt, int steps) {
       flow_->arrange(particles_, ghosts_, neighbours_.list());
     }
   }
-  if (builds_since_sort_ > builds_between_sorts) {
+  if (sort_due_) {
     rebuild_lists(true);
     refresh_melt();
     flow_->set_properties(particles_, ghosts_);

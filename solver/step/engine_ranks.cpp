@@ -87,6 +87,8 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   particles_.each_array([&](auto& values) { select(values, kept); });
   // What an engine that goes on from a state knows beside.
   select_if_there(mobile_, kept);
+  select_if_there(fast_, kept);
+  select_if_there(slow_power_, kept);
   select_if_there(built_at_, kept);
   add_free_slots();
   note_peers(places);
@@ -113,6 +115,8 @@ void Engine::fit_fields() {
     field->resize(n, 0.0);
   }
   mobile_.resize(n, 0);
+  slow_power_.resize(n, 0.0);
+  fast_.resize(n, 0);
   built_at_.resize(n, Vector{});
 }
 
@@ -182,6 +186,8 @@ Traveller Engine::pack(std::uint32_t i) const {
   t.phase = p.phase[i];
   t.melted = p.melted[i];
   t.mobile = mobile_[i];
+  t.fast = fast_[i];
+  t.slow_power = slow_power_[i];
   return t;
 }
 
@@ -189,6 +195,8 @@ void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
   t.write(particles_, i);
   particles_.home[i] = home;
   mobile_[i] = t.mobile;
+  fast_[i] = t.fast;
+  slow_power_[i] = t.slow_power;
 }
 
 std::uint32_t Engine::free_slot() {
@@ -236,7 +244,8 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     }
     particles_.home[i] = Home::nowhere;
     particles_.phase[i] = Phase::solid;
-    mobile_[i] = 0;
+    mobile_[i] = fast_[i] = 0;
+    slow_power_[i] = 0;
     // A diffusivity that stayed behind would hold the time step.
     thermal_diffusivity_[i] = diffusivity_[i] = 0;
     left.emplace(particles_.identity[i], i);

@@ -21,6 +21,8 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
     p.home[i] = Home::here;
     state.listed_at.push_back(t.listed_at);
     state.mobile.push_back(t.mobile);
+    state.fast.push_back(t.fast);
+    state.slow_power.push_back(t.slow_power);
     if (t.phase == Phase::liquid) {
       state.flow.acceleration.push_back(t.flow.acceleration);
       state.flow.shift.push_back(t.flow.shift);
@@ -73,6 +75,8 @@ EngineState Engine::state(bool everywhere) const {
     state.particles = particles_;
     state.listed_at = flow_ ? built_at_ : particles_.position;
     state.mobile = mobile_;
+    state.fast = fast_;
+    state.slow_power = slow_power_;
     if (flow_) {
       state.flow = flow_->memory();
     }
@@ -84,6 +88,7 @@ EngineState Engine::state(bool everywhere) const {
   state.limits = limits_;
   state.times = times_;
   state.time = time_;
+  state.round_time = round_time_;
   state.start_temperature = start_temperature_;
   state.steps = steps_;
   state.flow_steps = flow_count_;
@@ -118,6 +123,10 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
       halo_(std::make_unique<Halo>(ranks)),
       decomposition_(ranks),
       neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0),
+      fast_(std::move(state.fast)),
+      slow_power_(std::move(state.slow_power)),
+      round_time_(state.round_time),
+      round_open_(state.round_time > 0),
       start_temperature_(state.start_temperature),
       limits_(state.limits),
       ledger_(state.ledger),

@@ -30,6 +30,9 @@ struct EngineState {
   Particles particles;               ///< in the engine's order
   std::vector<Vector> listed_at;     ///< m, places of the particles when the lists were made
   std::vector<std::uint8_t> mobile;  ///< 1 for those that counted as moving then
+  std::vector<double> slow_power;    ///< W m-3, of the round of heat steps under way
+  std::vector<std::uint8_t> fast;    ///< 1 for those that take every step of it
+  double round_time = 0;             ///< s, so far; zero: none is under way
   FlowMemory flow;                   ///< of the last evaluation of the forces; empty without flow
   LimiterCounts limiters;            ///< so far
   EnergyLedger ledger;               ///< so far

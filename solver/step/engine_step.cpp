@@ -10,6 +10,17 @@
 #include "solver/step/stopwatch.hpp"
 
 namespace meltproof::solver {
+namespace {
+
+/// After so many remade lists the particles are put in order again and all lists are made afresh.
+constexpr std::size_t builds_between_sorts = 256;
+
+/// Of the thermal limit, how long a round of heat steps is, see exchange_heat(): 0.25 h^2 rho
+/// c_p/k. Up to there no exchange on a lattice makes a temperature that was not there before, and
+/// twice that is where it becomes unstable: the largest eigenvalue of its Laplacian is 4.0/h^2.
+constexpr double round_over_limit = 2;
+
+}  // namespace
 
 /// The step by all criteria, where it ends, and into how many steps of the flow it falls.
 Engine::Step Engine::choose_step(double until, double surface_rate) const {
@@ -70,6 +81,12 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
     dt = until - time_;
   }
   dt *= model_.step_factor;
+  // The round that is under way was not closed because another step as long as the last one fits.
+  step.round = round_over_limit * model_.step_factor * step.limits.thermal;
+  const double left = step.round - round_time_;
+  if (round_open_ && left > 0) {
+    dt = std::min(dt, left);
+  }
   double end = until;
   if (model_.laser && model_.laser->on(time_)) {
     // The beam is switched off exactly at the end of a step, so that its energy is P times its
@@ -91,10 +108,46 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
   return step;
 }
 
+/// What this step brought each particle, and all that follows from it.
+void Engine::apply(double dt) {
+  std::vector<Crossing> crossings;
+  for_each_particle(particles_.size(), [&](std::size_t i) {
+    // What exchanges nothing stays as it is; additive is exchanged where it diffuses.
+    if (particles_.home[i] != Home::here ||
+        (conducted_[i] == 0 && source_[i] == 0 && diffusivity_[i] == 0)) {
+      return;
+    }
+    const bool whole_round = round_closes_ && fast_[i] == 0;
+    Crossing c{.particle = static_cast<std::uint32_t>(i),
+               .old_enthalpy = particles_.enthalpy[i],
+               .old_temperature = particles_.temperature[i],
+               .begin = whole_round ? time_ + dt - round_time_ : time_,
+               .size = whole_round ? round_time_ : dt};
+    particles_.enthalpy[i] +=
+        dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
+    refresh(i);
+    const double liquidus = mixture_.liquidus(particles_.concentration[i]);
+    if ((c.old_temperature >= liquidus) != (particles_.temperature[i] >= liquidus)) {
+#pragma omp critical(crossings)
+      crossings.push_back(c);
+    }
+  });
+  update_copies();
+  // Apart from the loop above, because a gradient looks at the neighbours' new temperatures.
+  for (const Crossing& c : crossings) {
+    note_phase_times(c);
+  }
+  if (round_closes_) {
+    round_open_ = round_closes_ = false;
+    round_time_ = 0;
+  }
+}
+
 double Engine::step(double until) {
   // The state belongs to the present enthalpy and concentration: the constructor and the end of
   // each step see to that.
-  const std::size_t n = particles_.size();
+  // Known before the heat is exchanged: a round of its steps ends with a sort.
+  sort_due_ = builds_since_sort_ > builds_between_sorts;
   Stopwatch watch;
   if (flow_) {
     look_from_above();
@@ -110,38 +163,14 @@ double Engine::step(double until) {
   }
   watch.lap(times_.surface);
   if (model_.conduction) {
-    find_awake(heat_records_, neighbours_.list(), heat_active_);
-    if (!ranks().alone()) {
-      std::erase_if(heat_active_,
-                    [&](std::uint32_t i) { return particles_.home[i] != Home::here; });
-    }
-    conduct(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
-    if (model_.surface_conduction) {
-      surface_conduction_.add(heat_records_, neighbours_.list(), kernel_, heat_active_, conducted_);
-    }
+    exchange_heat(dt, step.round);
   }
   watch.lap(times_.heat);
   if (model_.species) {
     advance_species(dt);
   }
   watch.lap(times_.species);
-  old_enthalpy_ = particles_.enthalpy;
-  old_temperature_ = particles_.temperature;
-  for_each_particle(n, [&](std::size_t i) {
-    if (particles_.home[i] != Home::here) {
-      return;
-    }
-    particles_.enthalpy[i] +=
-        dt * (conducted_[i] * particles_.volume[i] + source_[i]) / particles_.mass[i];
-    refresh(i);
-  });
-  update_copies();
-  // Apart from the loop above, because a gradient looks at the neighbours' new temperatures.
-  for_each_particle(n, [&](std::size_t i) {
-    if (particles_.home[i] == Home::here) {
-      note_phase_times(i, old_enthalpy_[i], old_temperature_[i], dt);
-    }
-  });
+  apply(dt);
   watch.lap(times_.state);
   ledger_.absorbed += dt * beam_.absorbed;
   ledger_.reflected += dt * beam_.reflected;

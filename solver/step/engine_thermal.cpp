@@ -59,19 +59,19 @@ void Engine::advance_species(double dt) {
 }
 
 /// Times of melting and freezing, and how fast and steeply the melt froze.
-void Engine::note_phase_times(std::size_t i, double old_enthalpy, double old_temperature,
-                              double dt) {
-  const double concentration = particles_.concentration[i];
-  const double liquidus = mixture_.liquidus(concentration);
-  const double before = old_temperature, now = particles_.temperature[i];
-  if ((before >= liquidus) == (now >= liquidus) || dt <= 0) {
+void Engine::note_phase_times(const Crossing& c) {
+  if (c.size <= 0) {
     return;
   }
+  const std::uint32_t i = c.particle;
+  const double concentration = particles_.concentration[i];
+  const double liquidus = mixture_.liquidus(concentration);
+  const double now = particles_.temperature[i];
   // Enthalpy changes evenly within a step, temperature does not.
   const double crossing = mixture_.enthalpy(liquidus, concentration);
-  const double change = particles_.enthalpy[i] - old_enthalpy;
-  const double share = change != 0 ? std::clamp((crossing - old_enthalpy) / change, 0.0, 1.0) : 1;
-  const double when = time_ + share * dt;
+  const double change = particles_.enthalpy[i] - c.old_enthalpy;
+  const double share = change != 0 ? std::clamp((crossing - c.old_enthalpy) / change, 0.0, 1.0) : 1;
+  const double when = c.begin + share * c.size;
   if (now >= liquidus) {
     particles_.melt_time[i] = when;
     return;
@@ -79,7 +79,7 @@ void Engine::note_phase_times(std::size_t i, double old_enthalpy, double old_tem
   particles_.freeze_time[i] = when;
   // The rate at which the liquid cooled, before the latent heat held it.
   particles_.cooling_rate[i] =
-      -change / dt / mixture_.specific_heat(liquidus + 1e-6, concentration);
+      -change / c.size / mixture_.specific_heat(liquidus + 1e-6, concentration);
   InterfaceSums sums;
   const HeatRecord& own = heat_records_[i];
   const NeighbourList& list = neighbours_.list();

@@ -16,11 +16,12 @@ struct alignas(8) Traveller {
   Vector position, velocity, listed_at;
   double mass, volume, density, enthalpy, concentration, temperature, liquid_fraction,
       peak_temperature, melt_time, freeze_time, cooling_rate, freeze_gradient;
+  double slow_power;  ///< W m-3, see Engine::exchange_heat()
   FlowParticle flow;
   Origin origin;
   std::int32_t rank;  ///< that sent it
   Phase phase;
-  std::uint8_t melted, mobile;
+  std::uint8_t melted, mobile, fast;
 
   /// Into entry i of the arrays, but for its home.
   void write(Particles& p, std::size_t i) const {

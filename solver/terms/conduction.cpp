@@ -106,6 +106,23 @@ void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& nei
   }
 }
 
+namespace {
+
+/// The exchange of one particle with as many others as there are lanes, W m-3.
+[[gnu::always_inline]] inline Lane exchange(const HeatRecord& own, const HeatRecord* all,
+                                            const std::uint32_t* j, const QuinticSpline& kernel) {
+  const Lane dx = own.x - gather(all, j, &HeatRecord::x);
+  const Lane dy = own.y - gather(all, j, &HeatRecord::y);
+  const Lane dz = own.z - gather(all, j, &HeatRecord::z);
+  const Lane exchanged = conduction_pair(
+      Lane(own.conductivity), Lane(own.temperature), gather(all, j, &HeatRecord::conductivity),
+      gather(all, j, &HeatRecord::temperature), gather(all, j, &HeatRecord::volume),
+      kernel.gradient_factor(dx * dx + dy * dy + dz * dz));
+  return where_positive(own.awake + gather(all, j, &HeatRecord::awake), exchanged, Lane(0.0));
+}
+
+}  // namespace
+
 void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
              const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
              std::vector<double>& power) {
@@ -113,22 +130,34 @@ void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighb
   std::fill(power.begin(), power.end(), 0.0);
   for_each_particle(active.size(), [&](std::size_t member) {
     const std::uint32_t i = active[member];
-    const HeatRecord& own = all[i];
-    const Lane x = own.x, y = own.y, z = own.z, temperature = own.temperature,
-               conductivity = own.conductivity;
+    const HeatRecord own = all[i];
     Lane sum = 0;
     for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
-      const std::uint32_t* j = &neighbours.index[k];
-      const Lane dx = x - gather(all, j, &HeatRecord::x);
-      const Lane dy = y - gather(all, j, &HeatRecord::y);
-      const Lane dz = z - gather(all, j, &HeatRecord::z);
-      const Lane exchanged = conduction_pair(
-          conductivity, temperature, gather(all, j, &HeatRecord::conductivity),
-          gather(all, j, &HeatRecord::temperature), gather(all, j, &HeatRecord::volume),
-          kernel.gradient_factor(dx * dx + dy * dy + dz * dz));
-      sum += where_positive(own.awake + gather(all, j, &HeatRecord::awake), exchanged, Lane(0.0));
+      sum += exchange(own, all, &neighbours.index[k], kernel);
     }
     power[i] = sum_lanes(sum);
+  });
+}
+
+void conduct_apart(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+                   const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
+                   std::vector<double>& from_fast, std::vector<double>* from_slow) {
+  const HeatRecord* all = records.data();
+  for_each_particle(members.size(), [&](std::size_t member) {
+    const std::uint32_t i = members[member];
+    const HeatRecord own = all[i];
+    Lane fast = 0, slow = 0;
+    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
+      const std::uint32_t* j = &neighbours.index[k];
+      const Lane exchanged = exchange(own, all, j, kernel);
+      const Lane other = gather(all, j, &HeatRecord::fast);
+      fast += where_positive(other, exchanged, Lane(0.0));
+      slow += where_positive(other, Lane(0.0), exchanged);
+    }
+    from_fast[i] = sum_lanes(fast);
+    if (from_slow != nullptr) {
+      (*from_slow)[i] = sum_lanes(slow);
+    }
   });
 }
 

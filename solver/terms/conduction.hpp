@@ -26,6 +26,7 @@ struct alignas(64) HeatRecord {
   double temperature = 0;                                          ///< K
   double conductivity = 1;                                         ///< W m-1 K-1
   double awake = 1;  ///< 0: as cold as it began; two such exchange nothing
+  double fast = 0;   ///< 1: exchanges in every step, see Engine::exchange_heat()
 };
 
 /// The particles that exchange heat: those awake and the neighbours of those, in increasing order.
@@ -38,6 +39,12 @@ void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& nei
 void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
              const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
              std::vector<double>& power);
+/// What conduct() finds of slow particles beside fast ones, apart: the power from their fast
+/// neighbours into `from_fast`, that from the slow ones into `from_slow` unless it is null, W m-3.
+/// Only entries of `members` are written.
+void conduct_apart(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+                   const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
+                   std::vector<double>& from_fast, std::vector<double>* from_slow);
 /// The same for every particle.
 void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
              const QuinticSpline& kernel, std::vector<double>& power);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "solver/case/track_case.hpp"
+#include "solver/step/engine.hpp"
+
+namespace meltproof::solver {
+namespace {
+
+/// What a track in melt that nothing drives comes to, with heat in two paces or in one.
+struct Outcome {
+  std::vector<double> temperature, peak;  // K, by identity
+  double imbalance = 0;                   // of energy, of what was absorbed
+  double cooling_rate = 0;                // K s-1, median of those that froze
+  std::uint64_t evaluations = 0;
+};
+
+Outcome run(bool multirate, double step_factor = 1) {
+  TrackCase t;
+  Input input = declare(t);
+  input.read("solver/cases/track_1wt.toml",
+             {"powder.surface=bare", "laser.power=50 W", "spacing=10 um", "laser.exposure=100 us",
+              "domain.width=280 um", "domain.depth=140 um", "domain.before=112 um",
+              "domain.behind=112 um", "output.averaging_window=50 us"});
+  const Mixture mixture(read_material(t.base), read_material(t.additive));
+  const Discretisation made = discretise(t, mixture);
+  Model model = make_model(t, made.domain);
+  // Driven, the flow would be chaotic, and the last digit of a temperature would show.
+  model.flow->surface_tension = model.flow->marangoni = model.flow->recoil = false;
+  model.flow->gravity = {};
+  model.flow->shifting = 0;
+  model.multirate = multirate;
+  model.step_factor = step_factor;
+  Engine engine(made.particles, mixture, read_diffusivity(t.diffusivity_laws, t.diffusivity_law),
+                model);
+  const double before = engine.total_enthalpy();
+  while (engine.time() < 160e-6) {
+    engine.step(160e-6);
+  }
+  Outcome outcome;
+  const Particles& p = engine.particles();
+  outcome.temperature.resize(p.size());
+  outcome.peak.resize(p.size());
+  std::vector<double> rates;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    outcome.temperature[static_cast<std::size_t>(p.identity[i])] = p.temperature[i];
+    outcome.peak[static_cast<std::size_t>(p.identity[i])] = p.peak_temperature[i];
+    if (p.freeze_time[i] > 0) {
+      rates.push_back(p.cooling_rate[i]);
+    }
+  }
+  EXPECT_GT(rates.size(), 20U);
+  std::nth_element(rates.begin(), rates.begin() + static_cast<std::ptrdiff_t>(rates.size() / 2),
+                   rates.end());
+  outcome.cooling_rate = rates[rates.size() / 2];
+  const EnergyLedger& e = engine.ledger();
+  outcome.imbalance =
+      (engine.total_enthalpy() - before - e.absorbed + e.evaporated + e.radiated + e.convected) /
+      e.absorbed;
+  outcome.evaluations = engine.heat_evaluations();
+  return outcome;
+}
+
+}  // namespace
+
+TEST(HeatInTwoPaces, KeepsEnergyAndTemperaturesForAFractionOfTheWork) {
+  const Outcome one = run(false), two = run(true), finer = run(false, 0.5);
+  EXPECT_LT(std::abs(two.imbalance), 1e-12);
+  EXPECT_LT(static_cast<double>(two.evaluations), 0.5 * static_cast<double>(one.evaluations));
+  // What the second pace changes is as small as what half the step changes, some 15 K of 2000.
+  double slow = 0, half = 0;
+  for (std::size_t i = 0; i < one.peak.size(); ++i) {
+    slow = std::max({slow, std::abs(two.temperature[i] - one.temperature[i]),
+                     std::abs(two.peak[i] - one.peak[i])});
+    half = std::max({half, std::abs(finer.temperature[i] - one.temperature[i]),
+                     std::abs(finer.peak[i] - one.peak[i])});
+  }
+  EXPECT_LT(slow, 2 * half) << half;
+  EXPECT_GT(slow, 1e-6) << "there was no second pace";
+  EXPECT_NEAR(two.cooling_rate / one.cooling_rate, 1, 0.03);
+}
+
+}  // namespace meltproof::solver
