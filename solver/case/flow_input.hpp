@@ -22,9 +22,9 @@ struct FlowInput {
   std::string cure = "repulsion";            ///< "none", "repulsion", "transport"
   FlowSettings settings;
   long long steps = 10;          ///< acoustic steps in a thermal one, at most
+  bool two_paces = true;         ///< of heat, see Model::multirate
   double smallest_drop = 20e-6;  ///< m, radius of the smallest drop whose pressure must be held
   double freezing_fraction = 0.98;
-  int steps_per_thermal_step = 10;
 };
 
 /// The declaration; `flow` must outlive the input.

@@ -279,6 +279,7 @@ Model make_model(const TrackCase& t, const Domain& domain) {
     model.gas = t.flow.gas;
   }
   model.flow_steps = static_cast<int>(t.flow.steps);
+  model.multirate = t.flow.two_paces;
   // Heat that has warmed nothing by a thousandth of a kelvin is not felt.
   model.sleep_below = 1e-3;
   model.freezing_fraction = t.flow.freezing_fraction;

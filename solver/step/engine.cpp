@@ -62,8 +62,7 @@ void Engine::look_from_above() {
 
 /// Fields, lists and records for the particles as they stand.
 void Engine::prepare() {
-  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
-                      &absorptivity_, &loss_area_}) {
+  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_}) {
     field->assign(particles_.size(), 0.0);
   }
   slow_power_.resize(particles_.size(), 0.0);
@@ -83,28 +82,22 @@ void Engine::prepare() {
 void Engine::place_records() {
   const std::size_t n = particles_.size(), all = neighbours_.list().void_index + std::size_t{1};
   heat_records_.resize(all);
-  species_records_.resize(all);
   for_each_particle(n, [&](std::size_t i) { place_record(i, i, particles_.position[i]); });
   place_images();
   heat_records_.back() = {};
   heat_records_.back().awake = 0;
-  species_records_.back() = {};
 }
 
 void Engine::place_record(std::size_t at, std::size_t source, const Vector& position) {
-  const double volume = particles_.volume[source];
-  auto& heat = heat_records_[at];
-  auto& species = species_records_[at];
+  HeatRecord& heat = heat_records_[at];
   if (particles_.phase[source] == Phase::lost || particles_.home[source] == Home::nowhere) {
     heat = {};
-    species = {};
     return;
   }
-  heat.x = species.x = position[0];
-  heat.y = species.y = position[1];
-  heat.z = species.z = position[2];
-  heat.volume = species.volume = volume;
-  species.density = particles_.mass[source] / volume;
+  heat.x = position[0];
+  heat.y = position[1];
+  heat.z = position[2];
+  heat.volume = particles_.volume[source];
 }
 
 void Engine::place_images() {
@@ -157,7 +150,6 @@ void Engine::refresh(std::size_t i) {
   // What was lost exchanges nothing any more.
   const bool mixes = liquid > 0 && particles_.phase[i] != Phase::lost;
   diffusivity_[i] = mixes ? liquid * diffusivity_law_(temperature) : 0;
-  absorptivity_[i] = mixture_.absorptivity(concentration);
   heat_records_[i].temperature = temperature;
   heat_records_[i].conductivity = conductivity;
   heat_records_[i].fast = fast_[i];

@@ -173,6 +173,7 @@ class Engine {
   void refresh_melt();
   void rebuild_lists(bool everything);
   void find_movers();
+  Vector listed_at(std::uint32_t i) const;
   void sort_particles();
   void keep_in_period();
   void advance_flow(double dt, int steps);
@@ -217,9 +218,8 @@ class Engine {
   SurfaceColumns surface_;
   SurfaceConduction surface_conduction_;
   std::vector<HeatRecord> heat_records_;
-  std::vector<SpeciesRecord> species_records_;
-  std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_, rate_, absorptivity_,
-      half_step_, loss_area_;
+  SpeciesRecords species_records_;
+  std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_;
   std::vector<std::uint32_t> liquid_;
   // Of a round of steps, see exchange_heat(). Who conducts in this step; slow ones beside those.
   std::vector<std::uint32_t> heat_active_, boundary_;
@@ -240,7 +240,7 @@ class Engine {
   std::optional<GasFlow> gas_;
   std::vector<std::uint8_t> mobile_;   // when the lists were made: moves, or may begin to
   std::vector<std::uint32_t> movers_;  // those
-  std::vector<Vector> built_at_;  // positions of the liquid particles when the lists were built
+  std::vector<Vector> built_at_;       // where movers_ were then
   std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;
   StepTimes times_, times_at_balance_;
   std::vector<std::uint32_t> free_;  // entries without a particle

@@ -61,8 +61,12 @@ double Engine::farthest_moved() const {
   double square = 0;
   // The step's limits allow half a spacing.
   const double most = particles_.spacing * particles_.spacing;
-  for (const std::uint32_t i : flow_->liquid()) {
-    const Vector &a = particles_.position[i], &b = built_at_[i];
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    const std::uint32_t i = movers_[k];
+    if (particles_.phase[i] != Phase::liquid || particles_.home[i] != Home::here) {
+      continue;
+    }
+    const Vector &a = particles_.position[i], &b = built_at_[k];
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     const double moved = x * x + y * y + z * z;
     // False for what is no number, too.
@@ -82,7 +86,7 @@ void Engine::report_unstable(std::uint32_t particle, double moved) const {
       break;
     }
   }
-  const Vector& at = built_at_[particle];
+  const Vector at = listed_at(particle);
   throw std::runtime_error(fmt::format(
       "step {}, time {:.6g} s, particle {}, last listed at ({:.3g}, {:.3g}, {:.3g}) um: it moved "
       "by {:.3g} spacings within a few steps, so the flow is unstable; the force behind it: {}. A "
@@ -232,6 +236,7 @@ void Engine::sort_particles() {
   builds_since_sort_ = 0;
 }
 
+/// Of the lists just made, at the places for which they were made.
 void Engine::find_movers() {
   movers_.clear();
   for (std::uint32_t i = 0; i < mobile_.size(); ++i) {
@@ -239,6 +244,17 @@ void Engine::find_movers() {
       movers_.push_back(i);
     }
   }
+  built_at_.resize(movers_.size());
+  std::transform(movers_.begin(), movers_.end(), built_at_.begin(),
+                 [&](std::uint32_t i) { return particles_.position[i]; });
+}
+
+/// Where a particle was when the lists were made, m.
+Vector Engine::listed_at(std::uint32_t i) const {
+  const auto found = std::lower_bound(movers_.begin(), movers_.end(), i);
+  return found != movers_.end() && *found == i
+             ? built_at_[static_cast<std::size_t>(found - movers_.begin())]
+             : particles_.position[i];
 }
 
 void Engine::rebuild_lists(bool everything) {
@@ -273,7 +289,6 @@ void Engine::rebuild_lists(bool everything) {
   ++list_builds_;
   ++builds_since_sort_;
   flow_->arrange(particles_, ghosts_, neighbours_.list());
-  built_at_ = particles_.position;
   if (everything || !ghosts_.empty()) {
     find_movers();
     place_records();
@@ -288,13 +303,9 @@ void Engine::rebuild_lists(bool everything) {
   if (everything) {
     // Everybody has a new index: what was kept by the old ones is made afresh.
     liquid_.clear();
-    for (auto& record : species_records_) {
-      record.diffusivity = 0;
-    }
     for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
   }
   for (const std::uint32_t i : moved.entries) {
-    species_records_[i].diffusivity = 0;
     refresh(i);
   }
   if (model_.surface_conduction) {

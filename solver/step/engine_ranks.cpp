@@ -89,7 +89,6 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   select_if_there(mobile_, kept);
   select_if_there(fast_, kept);
   select_if_there(slow_power_, kept);
-  select_if_there(built_at_, kept);
   add_free_slots();
   note_peers(places);
   return kept;
@@ -110,14 +109,12 @@ void Engine::add_free_slots() {
 /// Every field of the engine as long as the particles' arrays.
 void Engine::fit_fields() {
   const std::size_t n = particles_.size();
-  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_, &rate_,
-                      &absorptivity_, &loss_area_}) {
+  for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_}) {
     field->resize(n, 0.0);
   }
   mobile_.resize(n, 0);
   slow_power_.resize(n, 0.0);
   fast_.resize(n, 0);
-  built_at_.resize(n, Vector{});
 }
 
 /// Who keeps copies of whom, by places alone. @param at per particle; free entries may be missing.
@@ -177,7 +174,7 @@ Traveller Engine::pack(std::uint32_t i) const {
   t.freeze_time = p.freeze_time[i];
   t.cooling_rate = p.cooling_rate[i];
   t.freeze_gradient = p.freeze_gradient[i];
-  t.listed_at = flow_ ? built_at_[i] : p.position[i];
+  t.listed_at = listed_at(i);
   if (flow_) {
     t.flow = flow_->particle(i);
   }

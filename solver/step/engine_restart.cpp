@@ -73,7 +73,10 @@ EngineState Engine::state(bool everywhere) const {
   state.particles.dimensions = particles_.dimensions;
   if (ranks().alone()) {
     state.particles = particles_;
-    state.listed_at = flow_ ? built_at_ : particles_.position;
+    state.listed_at = particles_.position;
+    for (std::size_t k = 0; k < movers_.size(); ++k) {
+      state.listed_at[movers_[k]] = built_at_[k];
+    }
     state.mobile = mobile_;
     state.fast = fast_;
     state.slow_power = slow_power_;
@@ -133,7 +136,6 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
       time_(state.time),
       steps_(state.steps),
       mobile_(std::move(state.mobile)),
-      built_at_(std::move(state.listed_at)),
       flow_count_(state.flow_steps),
       list_builds_(state.list_builds),
       builds_since_sort_(state.builds_since_sort),
@@ -148,7 +150,11 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
     check_ranks();
     // Whose a particle is follows from where it was when the lists were made.
     const std::vector<Phase> phases = particles_.phase;
-    const std::vector<std::uint32_t> kept = divide(std::vector<Vector>(built_at_));
+    const std::vector<std::uint32_t> kept = divide(state.listed_at);
+    std::vector<Vector> listed_at(particles_.size());  // free entries behind
+    std::transform(kept.begin(), kept.end(), listed_at.begin(),
+                   [&](std::uint32_t i) { return state.listed_at[i]; });
+    state.listed_at = std::move(listed_at);
     state.flow = part_of(state.flow, phases, kept, particles_.home);
     if (!ranks.root()) {
       state.limiters = {};  // counted once
@@ -157,14 +163,14 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   // The lists as they were made: with who stood where then. Lists that were older than that one
   // hold nobody who has moved since, so they come out the same.
   const std::vector<Vector> now = particles_.position;
-  particles_.position = built_at_;
+  particles_.position = std::move(state.listed_at);
   prepare();
+  find_movers();
   particles_.position = now;
   if (flow_) {
     flow_->arrange(particles_, ghosts_, neighbours_.list());
   }
   place_records();
-  find_movers();
   for_each_particle(particles_.size(), [&](std::size_t i) { refresh(i); });
   refresh_ghosts();
   if (flow_) {

@@ -159,7 +159,10 @@ double Engine::step(double until) {
   beam_ = {};
   if (model_.laser && model_.laser->on(time_)) {
     // The beam stands where it is in the middle of the step.
-    beam_ = irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity_, source_, ranks());
+    beam_ = irradiate(
+        *model_.laser, time_ + dt / 2, surface_,
+        [&](std::uint32_t i) { return mixture_.absorptivity(particles_.concentration[i]); },
+        source_, ranks());
   }
   watch.lap(times_.surface);
   if (model_.conduction) {

@@ -2,30 +2,46 @@
 // What happens to heat and additive within a thermal step, the laser and conduction apart.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
 
-/// Writes the liquid particles, copies included, and their images; those that were liquid before
-/// and no longer are get no diffusivity, and the others never had one.
+/// Records of what diffuses, copies and images included. @param concentration of liquid_, in that
+/// order.
 void Engine::fill_species_records(const std::vector<double>& concentration) {
-  for (const std::uint32_t i : liquid_) {
-    species_records_[i].concentration = concentration[i];
-    species_records_[i].diffusivity = diffusivity_[i];
+  const std::size_t n = particles_.size(), all = neighbours_.list().void_index + std::size_t{1};
+  SpeciesRecords& species = species_records_;
+  species.records.clear();
+  const auto record = [&](const Vector& at, std::uint32_t i, double c) {
+    const double volume = particles_.volume[i];
+    species.records.push_back(
+        {at[0], at[1], at[2], volume, particles_.mass[i] / volume, c, diffusivity_[i]});
+  };
+  for (std::size_t k = 0; k < liquid_.size(); ++k) {
+    record(particles_.position[liquid_[k]], liquid_[k], concentration[k]);
   }
-  const std::size_t n = particles_.size();
+  // Where each stands among them; all others exchange nothing, as the void does.
+  const auto none = static_cast<std::uint32_t>(liquid_.size() + ghosts_.size());
+  species.place.assign(all, none);
+  for (std::uint32_t k = 0; k < liquid_.size(); ++k) {
+    species.place[liquid_[k]] = k;
+  }
   for (std::size_t g = 0; g < ghosts_.size(); ++g) {
-    species_records_[n + g].concentration = concentration[ghosts_[g].source];
-    species_records_[n + g].diffusivity = diffusivity_[ghosts_[g].source];
+    const std::uint32_t source = ghosts_[g].source, place = species.place[source];
+    if (place == none) {
+      species.records.emplace_back();
+    } else {
+      record(ghosts_[g].image_of(particles_.position[source]), source, concentration[place]);
+      species.place[n + g] = static_cast<std::uint32_t>(species.records.size() - 1);
+    }
   }
+  species.records.emplace_back();
 }
 
 void Engine::advance_species(double dt) {
   // Only liquid particles exchange: D is zero in the solid, and the pair term with it.
-  for (const std::uint32_t i : liquid_) {
-    species_records_[i].diffusivity = 0;
-  }
   liquid_.clear();
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (diffusivity_[i] > 0 && particles_.home[i] != Home::nowhere) {
@@ -36,24 +52,40 @@ void Engine::advance_species(double dt) {
     return;
   }
   std::vector<std::uint32_t> own;
-  std::copy_if(liquid_.begin(), liquid_.end(), std::back_inserter(own),
-               [&](std::uint32_t i) { return particles_.home[i] == Home::here; });
-  fill_species_records(particles_.concentration);
-  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, own, rate_);
-  half_step_ = particles_.concentration;
-  for (const std::uint32_t i : own) {
-    half_step_[i] += 0.5 * dt * rate_[i];
+  std::vector<double> concentration, rate;
+  for (const std::uint32_t i : liquid_) {
+    concentration.push_back(particles_.concentration[i]);
+    if (particles_.home[i] == Home::here) {
+      own.push_back(i);
+    }
+  }
+  const auto exchange = [&] {
+    fill_species_records(concentration);
+    diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, own,
+            rate);
+  };
+  const auto place = [&](std::uint32_t i) { return species_records_.place[i]; };
+  exchange();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    concentration[place(own[k])] += 0.5 * dt * rate[k];
   }
   halo_->exchange(
-      Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = half_step_[i]; },
-      [&](std::uint32_t i, const double* in) { half_step_[i] = *in; });
-  fill_species_records(half_step_);
-  diffuse(species_records_, neighbours_.list(), species_kernel_, model_.species_factor, own, rate_);
-  for (const std::uint32_t i : own) {
+      Halo::everybody, 1,
+      [&](std::uint32_t i, double* out) {
+        *out = place(i) < concentration.size() ? concentration[place(i)] : 0;
+      },
+      [&](std::uint32_t i, const double* in) {
+        if (place(i) < concentration.size()) {
+          concentration[place(i)] = *in;
+        }
+      });
+  exchange();
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const std::uint32_t i = own[k];
     if (model_.species_scheme == SpeciesScheme::midpoint) {
-      particles_.concentration[i] += dt * rate_[i];
+      particles_.concentration[i] += dt * rate[k];
     } else {
-      particles_.concentration[i] = half_step_[i] + 0.5 * dt * rate_[i];
+      particles_.concentration[i] = concentration[place(i)] + 0.5 * dt * rate[k];
     }
   }
 }
@@ -116,16 +148,25 @@ double Engine::lose_surface_heat() {
     return 0;
   }
   if (flow_) {
-    std::fill(loss_area_.begin(), loss_area_.end(), 0.0);
-    for (const std::uint32_t top : surface_.top) {
-      if (top < particles_.size() && particles_.phase[top] == Phase::solid) {
-        loss_area_[top] += surface_.width * surface_.width;
+    std::vector<std::uint32_t> tops;
+    std::copy_if(surface_.top.begin(), surface_.top.end(), std::back_inserter(tops),
+                 [&](std::uint32_t top) {
+                   return top < particles_.size() && particles_.phase[top] == Phase::solid;
+                 });
+    std::sort(tops.begin(), tops.end());
+    std::vector<ExposedArea> areas;
+    for (std::size_t k = 0; k < tops.size(); ++k) {
+      if (k == 0 || tops[k] != tops[k - 1]) {
+        areas.push_back({tops[k], 0});
       }
+      areas.back().area += surface_.width * surface_.width;
     }
     for (const std::uint32_t i : flow_->liquid()) {
-      loss_area_[i] = flow_->area(i);
+      if (const double area = flow_->area(i); area > 0) {
+        areas.push_back({i, area});
+      }
     }
-    loss_ = lose_heat(particles_, loss_area_, mixture_, *model_.surface_loss, source_, ranks());
+    loss_ = lose_heat(particles_, areas, mixture_, *model_.surface_loss, source_, ranks());
   } else {
     loss_ = lose_heat(particles_, surface_, mixture_, *model_.surface_loss, source_, ranks());
   }

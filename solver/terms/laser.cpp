@@ -101,8 +101,8 @@ Footprint inclined_footprint(const Laser& laser, double x, const SurfaceColumns&
 }  // namespace
 
 LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& columns,
-                      const std::vector<double>& absorptivity, std::vector<double>& power,
-                      const Ranks& ranks) {
+                      const std::function<double(std::uint32_t)>& absorptivity,
+                      std::vector<double>& power, const Ranks& ranks) {
   LaserBudget budget;
   if (!laser.on(time) || laser.power <= 0) {
     return budget;
@@ -127,7 +127,7 @@ LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& col
       }
       const std::size_t column = j * f.count + i;
       met[column] = 1;
-      absorbed[column] = absorptivity[top] * (laser.power * f.share[column]);
+      absorbed[column] = absorptivity(top) * (laser.power * f.share[column]);
       power[top] += absorbed[column];
     }
   }

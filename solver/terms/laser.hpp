@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "solver/terms/surface.hpp"
@@ -38,10 +40,10 @@ struct LaserBudget {
 /// column by 3 x 3 Gauss points. A column gives the share a(C) to the first particle that it meets,
 /// reflects the rest, and misses if it holds no metal or lies outside the domain. Absorptivity does
 /// not depend on the angle, and reflected light is not followed.
-/// @param absorptivity per particle, 1; @param power per particle in W, added to; @param ranks that
-/// share the columns, whose budget comes back everywhere (collectively).
+/// @param absorptivity of a particle, 1; @param power per particle in W, added to; @param ranks
+/// that share the columns, whose budget comes back everywhere (collectively).
 LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& columns,
-                      const std::vector<double>& absorptivity, std::vector<double>& power,
-                      const Ranks& ranks = {});
+                      const std::function<double(std::uint32_t)>& absorptivity,
+                      std::vector<double>& power, const Ranks& ranks = {});
 
 }  // namespace meltproof::solver

@@ -1,33 +1,41 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/terms/species.hpp"
 
+#include <array>
+
 #include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 
-void diffuse(const std::vector<SpeciesRecord>& records, const NeighbourList& neighbours,
+void diffuse(const SpeciesRecords& all, const NeighbourList& neighbours,
              const QuinticSpline& kernel, SpeciesFactor factor,
-             const std::vector<std::uint32_t>& active, std::vector<double>& rate) {
-  const SpeciesRecord* all = records.data();
+             const std::vector<std::uint32_t>& members, std::vector<double>& rate) {
+  const SpeciesRecord* records = all.records.data();
   const double weight = factor == SpeciesFactor::consistent ? 2.0 : 4.0;
-  for_each_particle(active.size(), [&](std::size_t a) {
-    const std::size_t i = active[a];
-    const SpeciesRecord& own = all[i];
+  rate.resize(members.size());
+  for_each_particle(members.size(), [&](std::size_t member) {
+    const std::uint32_t i = members[member];
+    const SpeciesRecord& own = records[all.place[i]];
     const Lane x = own.x, y = own.y, z = own.z, diffusivity = own.diffusivity,
                density = own.density, concentration = own.concentration;
     Lane sum = 0;
+    std::array<std::uint32_t, lane_count> places;
+    const std::uint32_t* j = places.data();
     for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
-      const std::uint32_t* j = &neighbours.index[k];
-      const Lane dx = x - gather(all, j, &SpeciesRecord::x);
-      const Lane dy = y - gather(all, j, &SpeciesRecord::y);
-      const Lane dz = z - gather(all, j, &SpeciesRecord::z);
-      sum += species_pair(
-          diffusivity, density, concentration, gather(all, j, &SpeciesRecord::diffusivity),
-          gather(all, j, &SpeciesRecord::density), gather(all, j, &SpeciesRecord::concentration),
-          gather(all, j, &SpeciesRecord::volume),
-          kernel.gradient_factor(dx * dx + dy * dy + dz * dz), weight);
+      for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        places[lane] = all.place[neighbours.index[k + lane]];
+      }
+      const Lane dx = x - gather(records, j, &SpeciesRecord::x);
+      const Lane dy = y - gather(records, j, &SpeciesRecord::y);
+      const Lane dz = z - gather(records, j, &SpeciesRecord::z);
+      sum += species_pair(diffusivity, density, concentration,
+                          gather(records, j, &SpeciesRecord::diffusivity),
+                          gather(records, j, &SpeciesRecord::density),
+                          gather(records, j, &SpeciesRecord::concentration),
+                          gather(records, j, &SpeciesRecord::volume),
+                          kernel.gradient_factor(dx * dx + dy * dy + dz * dz), weight);
     }
-    rate[i] = sum_lanes(sum) / own.density;
+    rate[member] = sum_lanes(sum) / own.density;
   });
 }
 

@@ -36,13 +36,20 @@ struct alignas(64) SpeciesRecord {
   double volume = 0;                                               ///< m^d
   double density = 0;                                              ///< kg m-3
   double concentration = 0;                                        ///< mass fraction
-  double diffusivity = 0;                                          ///< m2 s-1, zero in the solid
+  double diffusivity = 0;                                          ///< m2 s-1, above zero
 };
 
-/// Rate of change of the concentration, 1/s, of the particles in `active`; the others stay
-/// untouched.
-void diffuse(const std::vector<SpeciesRecord>& records, const NeighbourList& neighbours,
+/// Those that exchange additive: only what is liquid does, a small part of all. Records, and where
+/// to find them.
+struct SpeciesRecords {
+  std::vector<std::uint32_t> place;    ///< in `records`, of particles, images and the void
+  std::vector<SpeciesRecord> records;  ///< the last one is the void: of all that exchange nothing
+};
+
+/// Rate of change of the concentration, 1/s. @param members particles that exchange;
+/// @param rate one for each of them, overwritten.
+void diffuse(const SpeciesRecords& all, const NeighbourList& neighbours,
              const QuinticSpline& kernel, SpeciesFactor factor,
-             const std::vector<std::uint32_t>& active, std::vector<double>& rate);
+             const std::vector<std::uint32_t>& members, std::vector<double>& rate);
 
 }  // namespace meltproof::solver

@@ -133,19 +133,17 @@ SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& co
   return budget;
 }
 
-SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<double>& area,
+SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<ExposedArea>& areas,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
                             std::vector<double>& power, const Ranks& ranks) {
   SurfaceLossBudget budget;
   LossSums sums;
-  for (std::uint32_t i = 0; i < particles.size(); ++i) {
-    if (area[i] > 0) {
-      const LossPerArea loss =
-          loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
-      power[i] -= area[i] * loss.total();
-      sums.add(loss, area[i]);
-      limit_rate(particles, i, mixture, area[i] * loss.slope, budget);
-    }
+  for (const auto& [i, area] : areas) {
+    const LossPerArea loss =
+        loss_per_area(particles.temperature[i], particles.concentration[i], mixture, settings);
+    power[i] -= area * loss.total();
+    sums.add(loss, area);
+    limit_rate(particles, i, mixture, area * loss.slope, budget);
   }
   sums.write(budget, ranks);
   return budget;

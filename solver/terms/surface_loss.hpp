@@ -67,9 +67,15 @@ SurfaceLossBudget lose_heat(const Particles& particles, const SurfaceColumns& co
                             const Mixture& mixture, const SurfaceLossSettings& settings,
                             std::vector<double>& power, const Ranks& ranks = {});
 
+/// What a particle gives off heat through.
+struct ExposedArea {
+  std::uint32_t particle = 0;
+  double area = 0;  ///< m2
+};
+
 /// The same through the surface that each particle itself stands for, seen from above or not.
-/// @param area per particle in m2, zero inside and for copies of other ranks' particles.
-SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<double>& area,
+/// @param areas of this rank's particles that have any.
+SurfaceLossBudget lose_heat(const Particles& particles, const std::vector<ExposedArea>& areas,
                             const Mixture& mixture, const SurfaceLossSettings& settings,
                             std::vector<double>& power, const Ranks& ranks = {});
 

@@ -34,6 +34,11 @@ Particles plate(std::size_t nx, std::size_t ny, double dx) {
   return particles;
 }
 
+/// Of each particle, from a list.
+auto of(const std::vector<double>& values) {
+  return [&](std::uint32_t i) { return values[i]; };
+}
+
 }  // namespace
 
 TEST(Conduction, APairLosesNothing) {
@@ -78,7 +83,7 @@ TEST(Laser, AbsorbedReflectedAndMissedAreThePower) {
     std::fill(power.begin(), power.end(), 0.0);
     const Laser laser{
         .power = 175, .radius = 40e-6, .speed = 0.375, .start_x = x, .y = 100e-6, .exposure = 1};
-    const LaserBudget budget = irradiate(laser, 0, columns, absorptivity, power);
+    const LaserBudget budget = irradiate(laser, 0, columns, of(absorptivity), power);
     EXPECT_NEAR(budget.absorbed + budget.reflected + budget.missed, 175, 175e-12) << x;
     double taken = 0;
     for (const double p : power) {
@@ -99,8 +104,8 @@ TEST(Laser, AUniformPlateAbsorbsATimesPToRoundOff) {
                     .start_x = 203.1e-6,
                     .y = 197e-6,
                     .exposure = 1};
-  const LaserBudget budget =
-      irradiate(laser, 0, columns, std::vector<double>(particles.size(), 0.4), power);
+  const LaserBudget budget = irradiate(
+      laser, 0, columns, [](std::uint32_t) { return 0.4; }, power);
   EXPECT_NEAR(budget.absorbed, 70, 70e-13);
   EXPECT_EQ(budget.missed, 0);
 }
@@ -112,7 +117,8 @@ TEST(Laser, TheDepositIsTheGaussianOfItsRadius) {
   std::vector<double> power(particles.size(), 0.0);
   const Laser laser{
       .power = 100, .radius = radius, .speed = 1, .start_x = 200e-6, .y = 200e-6, .exposure = 1};
-  irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  irradiate(
+      laser, 0, columns, [](std::uint32_t) { return 1.0; }, power);
   // Inside the 1/e2 radius lies 1 - exp(-2) of the power; its second moment along x is r^2/4.
   double inside = 0, moment = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -142,7 +148,8 @@ TEST(Laser, WhatLiesInTheShadowGetsNothing) {
   std::vector<double> power(particles.size(), 0.0);
   const Laser laser{
       .power = 100, .radius = 30e-6, .speed = 1, .start_x = 50e-6, .y = 50e-6, .exposure = 1};
-  irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  irradiate(
+      laser, 0, columns, [](std::uint32_t) { return 1.0; }, power);
   EXPECT_EQ(power[below], 0);
   EXPECT_GT(power.back(), 0);
   EXPECT_GT(power[below - 1], 0);
@@ -174,7 +181,7 @@ TEST(Laser, AnInclinedBeamLosesNothing) {
                         .azimuth = azimuth};
       const auto columns = find_surface(particles, {0, 0, 0}, {40 * dx, 20 * dx, 0}, laser.slant());
       std::vector<double> power(particles.size(), 0.0);
-      const LaserBudget budget = irradiate(laser, 0, columns, absorptivity, power);
+      const LaserBudget budget = irradiate(laser, 0, columns, of(absorptivity), power);
       EXPECT_NEAR(budget.absorbed + budget.reflected + budget.missed, 175, 175e-12);
       EXPECT_NEAR(std::accumulate(power.begin(), power.end(), 0.0), budget.absorbed, 175e-12);
       EXPECT_GT(budget.absorbed, 0.05 * 175);
@@ -195,8 +202,8 @@ TEST(Laser, TheFootprintOfAnInclinedBeamIsAnEllipse) {
                     .azimuth = azimuth};
   const auto columns = find_surface(particles, {0, 0, 0}, {200 * dx, 200 * dx, 0}, laser.slant());
   std::vector<double> power(particles.size(), 0.0);
-  const LaserBudget budget =
-      irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  const LaserBudget budget = irradiate(
+      laser, 0, columns, [](std::uint32_t) { return 1.0; }, power);
   EXPECT_NEAR(budget.absorbed, 100, 1e-10);
   // Centres of the top layer lie half a spacing below z = 0, where the axis has moved on a little.
   const double shift = dx / 2 * std::tan(incidence);
@@ -223,9 +230,9 @@ TEST(Laser, AnAlmostVerticalBeamIsTheVerticalOne) {
       .power = 100, .radius = 40e-6, .speed = 1, .start_x = 151e-6, .y = 149e-6, .exposure = 1};
   const std::vector<double> absorptivity(particles.size(), 0.4);
   std::vector<double> vertical(particles.size(), 0.0), inclined(particles.size(), 0.0);
-  irradiate(laser, 0, columns, absorptivity, vertical);
+  irradiate(laser, 0, columns, of(absorptivity), vertical);
   laser.incidence = 1e-9;
-  irradiate(laser, 0, columns, absorptivity, inclined);
+  irradiate(laser, 0, columns, of(absorptivity), inclined);
   for (std::size_t i = 0; i < particles.size(); ++i) {
     EXPECT_NEAR(vertical[i], inclined[i], 1e-5);
   }
@@ -246,7 +253,8 @@ TEST(Laser, TheShadowOfAGrainLiesAlongTheBeam) {
                     .azimuth = 0};
   const auto columns = find_surface(particles, {0, 0, 0}, {20 * dx, 10 * dx, 0}, laser.slant());
   std::vector<double> power(particles.size(), 0.0);
-  irradiate(laser, 0, columns, std::vector<double>(particles.size(), 1.0), power);
+  irradiate(
+      laser, 0, columns, [](std::uint32_t) { return 1.0; }, power);
   for (std::size_t i = 0; i + 1 < particles.size(); ++i) {
     const auto& at = particles.position[i];
     if (at[2] > -dx && std::abs(at[1] - 45e-6) < 1e-9 && at[0] > 20e-6 && at[0] < 180e-6) {
@@ -292,11 +300,13 @@ TEST(SurfaceLoss, AFlatSurfaceLosesTheSameByColumnsAndByArea) {
   const Mixture mixture = paper_mixture();
   const double dx = 10e-6;
   Particles particles = plate(6, 4, dx);
-  std::vector<double> area(particles.size(), 0.0);
-  for (std::size_t i = 0; i < particles.size(); ++i) {
+  std::vector<ExposedArea> area;
+  for (std::uint32_t i = 0; i < particles.size(); ++i) {
     particles.temperature[i] = 2900 + 50 * static_cast<double>(i % 7);
     particles.concentration[i] = 0.02 * static_cast<double>(i % 3);
-    area[i] = particles.position[i][2] > -dx ? dx * dx : 0;
+    if (particles.position[i][2] > -dx) {
+      area.push_back({i, dx * dx});
+    }
   }
   const SurfaceLossSettings settings{.heat_transfer_coefficient = 80};
   const auto columns = find_surface(particles, {0, 0, 0}, {6 * dx, 4 * dx, 0});

@@ -88,7 +88,8 @@ VerificationRun run_laser_budget(const VerificationCase& c, double spacing) {
     const SurfaceColumns columns =
         find_surface(particles, {0, 0, 0}, {length, width, 0}, laser.slant());
     std::vector<double> power(particles.size(), 0.0);
-    const LaserBudget budget = irradiate(laser, 0, columns, absorptivity, power);
+    const LaserBudget budget = irradiate(
+        laser, 0, columns, [&](std::uint32_t i) { return absorptivity[i]; }, power);
     double held = 0;
     for (const double p : power) {
       held += p;
