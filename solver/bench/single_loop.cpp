@@ -14,7 +14,7 @@ NeighbourList padded(const NeighbourList& list) {
   result.void_index = list.void_index;
   result.reach = list.reach;
   for (std::size_t i = 0; i < list.last.size(); ++i) {
-    result.first.push_back(result.index.size());
+    result.first.push_back(list_place(result.index.size()));
     for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
       if (list.index[k] != list.void_index) {
         result.index.push_back(list.index[k]);
@@ -23,9 +23,9 @@ NeighbourList padded(const NeighbourList& list) {
     while ((result.index.size() - result.first.back()) % single_count != 0) {
       result.index.push_back(list.void_index);
     }
-    result.last.push_back(result.index.size());
+    result.last.push_back(list_place(result.index.size()));
   }
-  result.first.push_back(result.index.size());
+  result.first.push_back(list_place(result.index.size()));
   return result;
 }
 

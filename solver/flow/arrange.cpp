@@ -128,9 +128,9 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
   std::size_t end = 0;
   for (std::size_t s = 0; s < particle_.size(); ++s) {
     const std::uint32_t i = particle_[s];
-    list_.first[s] = end;
+    list_.first[s] = list_place(end);
     end += list.last[i] - list.first[i];  // nothing of copies
-    list_.last[s] = end;
+    list_.last[s] = list_place(end);
   }
   list_.index.resize(end);
   const auto slot = [&](std::uint32_t j) {
@@ -153,7 +153,7 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
   for (const std::uint32_t i : wall_) {
     const std::uint32_t s = slot_of[i];
     const std::size_t begin = melt_near_wall_.index.size();
-    melt_near_wall_.first.push_back(begin);
+    melt_near_wall_.first.push_back(list_place(begin));
     for (std::size_t k = list_.first[s]; k < list_.last[s]; ++k) {
       const std::uint32_t j = list_.index[k];
       if (j < images && is_melt[j] != 0) {
@@ -163,7 +163,7 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
     while ((melt_near_wall_.index.size() - begin) % lane_count != 0) {
       melt_near_wall_.index.push_back(list_.void_index);
     }
-    melt_near_wall_.last.push_back(melt_near_wall_.index.size());
+    melt_near_wall_.last.push_back(list_place(melt_near_wall_.index.size()));
   }
 }
 

@@ -47,7 +47,7 @@ struct Candidates {
   /// Those near the box around all of `members`: a quarter to a half fewer than all around the
   /// cell.
   void gather(const CellGrid& grid, const ListOrder& order, const Points& points,
-              const std::vector<double>& limits, std::span<const std::uint32_t> members) {
+              const ListLimits& limits, std::span<const std::uint32_t> members) {
     Vector low = points[members.front()], high = low;
     for (const std::uint32_t i : members) {
       for (std::size_t d = 0; d < 3; ++d) {
@@ -103,7 +103,7 @@ struct Candidates {
 /// The lists of a block of members, appended to list.index.
 void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
-                  const std::vector<double>& limits) {
+                  const ListLimits& limits) {
   // Members by cell, in their order within each.
   std::vector<std::uint32_t> home(members.size()), sorted(members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
@@ -137,8 +137,8 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
         while ((out.size() - begin) % lane_count != 0) {
           out.push_back(list.void_index);
         }
-        list.first[i] = begin;  // within the cell, for now
-        list.last[i] = out.size();
+        list.first[i] = static_cast<ListPlace>(begin);  // within the cell, for now
+        list.last[i] = static_cast<ListPlace>(out.size());
       }
     }
   }
@@ -155,9 +155,9 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
     const std::uint32_t i = members[m];
     const std::size_t length = list.last[i] - list.first[i];
     within[m] = list.first[i];
-    list.first[i] = end;
+    list.first[i] = static_cast<ListPlace>(end);
     end += length;
-    list.last[i] = end;
+    list.last[i] = list_place(end);
   }
   if (end > list.index.capacity()) {
     // Twice as much would be memory that is never used.
@@ -176,7 +176,7 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
 
 void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
-                  const std::vector<double>& limits) {
+                  const ListLimits& limits) {
   const std::size_t before = list.index.size();
   for (std::size_t begin = 0; begin < members.size(); begin += block) {
     append_block(list, grid, order, points,

@@ -23,12 +23,19 @@ struct ListOrder {
   void sort(std::vector<std::uint32_t>& indices) const;
 };
 
+/// Below which distance two points are neighbours: the larger of theirs.
+struct ListLimits {
+  double near = 0, far = 0;          ///< m2
+  std::vector<std::uint8_t> moving;  ///< per point: 1 takes `far`; none: all take `near`
+
+  double operator[](std::size_t i) const { return moving.empty() || moving[i] == 0 ? near : far; }
+};
+
 /// Appends the lists of `members` to list.index in their order and sets their first and last. Made
 /// block by block: beside the lists themselves there is only a block of them in memory.
-/// @param grid of all points that may be neighbours, cells as large as the longest reach; @param
-/// limits per point, m2: two points are neighbours below the larger of theirs.
+/// @param grid of all points that may be neighbours, cells as large as the longest reach.
 void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
-                  const std::vector<double>& limits);
+                  const ListLimits& limits);
 
 }  // namespace meltproof::solver

@@ -2,7 +2,9 @@
 #include "solver/particles/neighbours.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/particles/cell_grid.hpp"
@@ -21,6 +23,15 @@ double NeighbourList::mean_neighbours() const {
   return last.empty() ? 0 : static_cast<double>(real) / static_cast<double>(last.size());
 }
 
+ListPlace list_place(std::size_t place) {
+  if (place > std::numeric_limits<ListPlace>::max()) {
+    throw std::length_error(
+        "the neighbour lists of one rank have more than 2^32 entries: start more ranks (mpirun "
+        "-n)");
+  }
+  return static_cast<ListPlace>(place);
+}
+
 NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
                               double reach) {
   const Points points{particles, ghosts};
@@ -33,8 +44,8 @@ NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghos
   std::vector<std::uint32_t> everyone(particles.size());
   std::iota(everyone.begin(), everyone.end(), 0U);
   append_lists(list, grid, ListOrder(particles), points, everyone,
-               std::vector<double>(points.size(), reach * reach));
-  list.first.back() = list.index.size();
+               {.near = reach * reach, .far = 0, .moving = {}});
+  list.first.back() = list_place(list.index.size());
   return list;
 }
 
@@ -110,7 +121,7 @@ std::vector<std::uint8_t> MovingNeighbours::find_touched(const Points& points, c
 void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>& ghosts,
                             const std::vector<std::uint8_t>& mobile,
                             const std::vector<std::uint32_t>& arrived, bool all) {
-  const double reach = support_ + skin_, near = support_ * support_, far = reach * reach;
+  const double reach = support_ + skin_;
   const Points points{particles, ghosts};
   const std::size_t n = particles.size();
   list_.void_index = static_cast<std::uint32_t>(points.size());
@@ -133,15 +144,11 @@ void MovingNeighbours::make(const Particles& particles, const std::vector<Ghost>
   const CellGrid grid(points, reach, [&](std::size_t i) {
     return points.there(i) && (all || box.holds(points[i]));
   });
-  std::vector<std::uint8_t> moves(mobile);
-  std::vector<double> limits(points.size());
+  ListLimits limits{.near = support_ * support_, .far = reach * reach, .moving = mobile};
   for (const auto& ghost : ghosts) {
-    moves.push_back(mobile[ghost.source]);
+    limits.moving.push_back(mobile[ghost.source]);
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    limits[i] = moves[i] != 0 ? far : near;
-  }
-  const std::vector<std::uint8_t> touched = find_touched(points, grid, moves);
+  const std::vector<std::uint8_t> touched = find_touched(points, grid, limits.moving);
   // Whoever is left behind by the melt gets a last list, which then stays.
   std::vector<std::uint8_t> left(n, all ? 1 : 0);
   for (const auto* indices : {&std::as_const(remade_), &arrived}) {

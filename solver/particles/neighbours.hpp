@@ -13,14 +13,19 @@ namespace meltproof::solver {
 struct Points;
 struct CellGrid;
 
+/// A place in NeighbourList::index: half the size of a pointer, as there are two per particle.
+using ListPlace = std::uint32_t;
+/// The same of a count. @throws std::length_error from some 40 million particles on.
+ListPlace list_place(std::size_t place);
+
 /// For every particle the indices of its neighbours without itself: particles count from 0, ghosts
 /// follow behind them, and the void record, which takes part in nothing, is the last index. Each
 /// list is in the order of Particles::before(), that is in space-filling order, and padded with the
 /// void to whole lanes. Only particles of this rank have one.
 struct NeighbourList {
-  std::vector<std::size_t> first;  ///< list of i begins at index[first[i]]; size n + 1
-  std::vector<std::size_t> last;   ///< and ends before index[last[i]]; size n. Lists made in one go
-                                   ///< follow each other: last[i] == first[i + 1]
+  std::vector<ListPlace> first;  ///< list of i begins at index[first[i]]; size n + 1
+  std::vector<ListPlace> last;   ///< and ends before index[last[i]]; size n. Lists made in one go
+                                 ///< follow each other: last[i] == first[i + 1]
   std::vector<std::uint32_t> index;
   std::uint32_t void_index = 0;
   double reach = 0;  ///< m, the largest distance listed
