@@ -84,7 +84,16 @@ class AnyNumberOfRanks(unittest.TestCase):
     def test_what_cannot_be_shared_is_refused_in_a_sentence(self):
         done = run_case(self.root / "gas", "--set", "flow.surroundings=gas", ranks=2)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(done.stderr.count("cannot be divided among several ranks"), 1, done.stderr)
+        self.assertEqual(done.stderr.count("flow.surroundings = \"gas\" cannot be divided among several ranks"), 1,
+                         done.stderr)
+
+    def test_processes_that_do_not_know_of_each_other_are_stopped(self):
+        # As srun starts them without a PMIx that both sides speak: four runs into the same folder.
+        done = subprocess.run(command(self.root / "alone"), capture_output=True, text=True,
+                              env={**environment(0), "SLURM_STEP_NUM_TASKS": "4"})
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("4 processes that do not know of each other", done.stderr)
+        self.assertFalse((self.root / "alone" / "run.h5").exists())
 
     def test_a_bad_input_is_said_once(self):
         done = run_case(self.root / "bad", "--set", "laser.power=-1 W", ranks=3)

@@ -102,10 +102,10 @@ inline double surface_area(double pull, double curvature, double depth) {
 
 /// **Area through which a particle gives off heat**, m^(d-1). Where neighbours are around it,
 /// surface_area(). Spray has no surface that a colour gradient could find: a particle alone has
-/// none at all, one of a pair a fifteenth of its own. It is a ball of its own volume, open as far
-/// as its kernel is empty: 4 pi r^2 alone (exact); in a pair or a thread some 15 % more than a
-/// sphere or a cylinder of their volume has. Between 0.35 and 0.5 of the kernel filled (0.42 in the
-/// corner of a lattice, 0.56 in its edge, 0.75 in its face) one goes over into the other.
+/// none at all, one of a pair an eighteenth of its own. It is a ball of its own volume, open as far
+/// as its kernel is empty: 4 pi r^2 alone (exact); in a pair or a thread 13 to 16 % more than a
+/// sphere or a cylinder of their volume has. Between 0.35 and 0.5 of the kernel filled (0.48 in the
+/// corner of a lattice, 0.61 in its edge, 0.78 in its face) one goes over into the other.
 /// @param filled share of the kernel that is filled, the particle itself included.
 /// @param alone what the particle itself fills of it.
 inline double exposed_area(double surface, double filled, double alone, double volume,

@@ -49,6 +49,38 @@ TEST(Interface, SprayIsExposedAllAround) {
   }
 }
 
+// The numbers on which exposed_area() rests: how full the kernel of a lattice's particles is, what
+// a pair's colour gradient makes of its area, and what balls make of pairs and threads.
+TEST(Interface, SprayAndLatticesAreToldApartByWhatFillsTheirKernels) {
+  const QuinticSpline kernel(1, 3);
+  double lattice = 0, corner = 0, edge = 0, face = 0;
+  for (int i = -3; i <= 3; ++i) {
+    for (int j = -3; j <= 3; ++j) {
+      for (int k = -3; k <= 3; ++k) {
+        const double w = kernel.value(std::sqrt(i * i + j * j + k * k));
+        lattice += w;
+        face += k <= 0 ? w : 0;
+        edge += k <= 0 && j <= 0 ? w : 0;
+        corner += k <= 0 && j <= 0 && i <= 0 ? w : 0;
+      }
+    }
+  }
+  EXPECT_NEAR(corner / lattice, 0.48, 0.005);
+  EXPECT_NEAR(edge / lattice, 0.61, 0.005);
+  EXPECT_NEAR(face / lattice, 0.78, 0.005);
+  const double alone = kernel.value(0.0) / lattice, sphere = std::cbrt(36 * std::numbers::pi);
+  // 2 |grad c| V of a pair a spacing apart.
+  EXPECT_NEAR(-2 * kernel.slope(1.0) / sphere, 1.0 / 18, 0.001);
+  const double pair = exposed_area(0, alone + kernel.value(1.0) / lattice, alone, 1, 3);
+  EXPECT_NEAR(pair / (sphere * std::cbrt(4.0) / 2), 1.16, 0.005);
+  double beside = 0;
+  for (int i = 1; i <= 3; ++i) {
+    beside += 2 * kernel.value(static_cast<double>(i)) / lattice;
+  }
+  const double thread = exposed_area(0, alone + beside, alone, 1, 3);
+  EXPECT_NEAR(thread / (2 * std::sqrt(std::numbers::pi)), 1.13, 0.005);
+}
+
 // The colour gradient below a sphere (circle), by integrating the kernel over it, is that of the
 // plane times 1 + kappa s/2, and the depth read off the plane falls short by per_curvature.
 TEST(Interface, CurvatureMakesParticlesSeemShallowerByAKnownAmount) {
