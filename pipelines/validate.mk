@@ -34,12 +34,17 @@ $(WORK)/powder_%/powder.h5: solver/cases/powder_%.toml $(BIN)/meltproof-powder
 	@mkdir -p $(@D)
 	@$(STAGE) 'powder bed, $*' $(BIN)/meltproof-powder $< --output $@
 
+# The paper profile takes hours: made again it goes on where it was stopped, and the melt of a coarser profile, if there
+# is one, tells how long it will take.
+coarser_melt = $(firstword $(wildcard $(foreach profile,desk smoke,reports/work/$(profile)/track_$(1)/history.csv)))
+long_run = $(if $(filter paper,$(PROFILE)),--restart $(patsubst %,--melt-of %,$(coarser_melt)))
+
 define solve
 $(WORK)/track_$(1)/run.h5 $(WORK)/track_$(1)/history.csv $(WORK)/track_$(1)/result.json &: \
     solver/cases/track_$(1).toml $(2) $(MATERIALS) $(BIN)/meltproof-solve
 	@mkdir -p $(WORK)/track_$(1)
 	@$(STAGE) 'track $(1), spacing $(spacing_of)' $(BIN)/meltproof-solve $$< --output $(WORK)/track_$(1) \
-	  --threads $(THREADS) --set spacing="$(spacing_of)" $(2:%=--powder %)
+	  --threads $(THREADS) --set spacing="$(spacing_of)" $(2:%=--powder %) $(long_run)
 endef
 $(foreach track,$(POWDER_TRACKS),$(eval $(call solve,$(track),$(WORK)/powder_$(track)/powder.h5)))
 $(foreach track,$(BARE_TRACKS),$(eval $(call solve,$(track),)))

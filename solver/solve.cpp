@@ -45,6 +45,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   program.app.add_option("--checkpoint-steps", how.checkpoint_steps,
                          "thermal steps between checkpoints, beside those by time; 0: none");
+  program.app.add_option("--melt-of", how.melt_of,
+                         "history.csv of a coarser run of the same track: the time left then "
+                         "follows how its melt grew");
   program.app.add_flag("--restart", how.restart,
                        "go on from the newest good checkpoint in the output folder; without one, "
                        "begin");

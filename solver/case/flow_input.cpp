@@ -117,9 +117,10 @@ InputTable flow_table(FlowInput& f) {
                        .about = "Acoustic steps in a thermal one, at most.",
                        .minimum = 1,
                        .maximum = 1000})
-      .flag(f.two_paces,
-            {.name = "heat_in_two_paces",
-             .about = "Metal far from the melt conducts heat in steps as long as conduction allows."})
+      .flag(
+          f.two_paces,
+          {.name = "heat_in_two_paces",
+           .about = "Metal far from the melt conducts heat in steps as long as conduction allows."})
       .quantity(s.skin, {.name = "skin",
                          .unit = "1",
                          .about = "Skin of the Verlet lists, in spacings.",

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "base/stop_request.hpp"
+#include "solver/case/time_left.hpp"
 #include "solver/case/track_result.hpp"
 #include "solver/output/checkpoint.hpp"
 #include "solver/output/paraview.hpp"
@@ -59,6 +60,7 @@ class TrackRun {
         reference_(pool_isotherm(track, mixture_)),
         judged_(track_acceptance(made_.domain.lower, made_.domain.upper,
                                  track.speed * track.exposure, track.beam_radius)),
+        time_left_(options.melt_of.empty() ? TimeLeft() : TimeLeft(read_melt(options.melt_of))),
         begun_(std::chrono::steady_clock::now()),
         written_(begun_) {}
 
@@ -83,6 +85,8 @@ class TrackRun {
     {
       const StopRequest stop;
       Progress progress(options_.name, t_.exposure, std::min(engine_->time(), t_.exposure));
+      spanned_ = engine_->time();
+      span_began_ = seconds();
       while (engine_->time() < end() && advance(writer, stop, progress)) {
       }
     }
@@ -207,7 +211,16 @@ class TrackRun {
       const std::string state = fmt::format(
           "step {}, t {:.1f} us, dt {:.3f} us, pool {:.0f} um, peak {:.0f} K", engine_->steps(),
           1e6 * now.time, 1e6 * dt, 1e6 * now.pool.length, now.peak_temperature);
-      if (engine_->time() <= t_.exposure) {
+      // History lines are a few microseconds apart, so a span is what came since the last one.
+      const double span = now.time - spanned_, wall = seconds();
+      time_left_.add(span, wall - span_began_, now.liquid_volume);
+      spanned_ = now.time;
+      span_began_ = wall;
+      if (const auto left = time_left_.seconds(now.time)) {
+        progress.say(fmt::format("{:.1f} %, {} left and {} in all if the melt grows as in {}; {}",
+                                 100 * std::min(1.0, now.time / t_.exposure), duration_text(*left),
+                                 duration_text(wall + *left), options_.melt_of.string(), state));
+      } else if (engine_->time() <= t_.exposure) {
         progress.update(engine_->time(), state);
       } else {
         // Nobody knows when the last of it will be solid, only until when it would be waited for.
@@ -314,6 +327,8 @@ class TrackRun {
   CheckpointFolder checkpoints_;
   double reference_;  // K, outlines the pool
   AcceptanceSettings judged_;
+  TimeLeft time_left_;
+  double spanned_ = 0, span_began_ = 0;  // s, simulated and of the clock, of the last history line
   std::optional<Engine> engine_;
   RunProgress run_;
   bool restarted_ = false;

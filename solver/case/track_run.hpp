@@ -22,6 +22,7 @@ struct RunOptions {
   bool restart = false;              ///< go on from the newest checkpoint, if there is one
   double checkpoint_interval = 600;  ///< s of wall-clock time between two; zero: none
   std::size_t checkpoint_steps = 0;  ///< thermal steps between two; zero: none
+  std::filesystem::path melt_of;     ///< history.csv of a coarser run, for the time left; or empty
   Ranks ranks;                       ///< that share the run; the root writes what there is to write
 };
 
