@@ -203,6 +203,15 @@ std::vector<float> smoothed(const Stack& stack, double along, double across) {
 std::optional<StackedPool> measure_stack(const Stack& stack, const Level& level, double along,
                                          double across) {
   const std::vector<float> image = smoothed(stack, along, across);
+  if (!level.step) {
+    // On the fine columns themselves: less is left to interpolation along the scan.
+    RegionFinder finder(stack.columns, stack.lines, level.interpolation);
+    const auto region = finder.largest(image, *level.value);
+    if (!region || region->pixels < smallest_pool * Stack::samples) return std::nullopt;
+    const double fine = 1.0 / Stack::samples;
+    return StackedPool{fine * region->x.high, fine * region->x.low, fine * region->x.size(),
+                       region->y.size()};
+  }
   const std::size_t width = stack.columns / Stack::samples;
   RegionFinder finder(width, stack.lines, level.interpolation);
   std::vector<float> part(width * stack.lines), marked;

@@ -51,8 +51,9 @@ struct StackedPool {
   double length = 0, depth = 0;
 };
 
-/// Measures the mean pool at a level as a frame is measured: the stack is parted into `samples`
-/// images of whole pixels, each at another offset, and their results are averaged.
+/// Measures the mean pool at a level: by its contour on the stack's own columns; where the level has
+/// a step, as frames are measured, in `samples` images of whole pixels, each at another offset,
+/// whose results are averaged.
 /// @param along,across px, sigma of a Gaussian with which the stack is smoothed before.
 std::optional<StackedPool> measure_stack(const Stack& stack, const Level& level, double along = 0,
                                          double across = 0);

@@ -49,4 +49,18 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
                                   const PlateEdge& edge, double start, std::uint64_t seed,
                                   int steps = 60);
 
+/// An end of the mean pool without the blur.
+struct SharpEdge {
+  double position = 0;  ///< px along a line, outermost place
+  double u = 0;         ///< px, standard uncertainty by bootstrap over lines
+  double misfit = 0;    ///< chi-squared over degrees of freedom
+};
+
+/// Where the mean pool ends at a signal, `log_level` = ln(S - dark), without the blur: the same model
+/// without a front, fitted to the tail or to the leading edge. @return nothing where there are too
+/// few samples or the field does not fall to the level within them.
+std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double log_level, bool leading,
+                                  std::uint64_t seed);
+
 }  // namespace meltproof::imaging
