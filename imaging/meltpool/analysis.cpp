@@ -145,9 +145,14 @@ std::optional<Region> pool_in(const Recording& recording, const Analysis& analys
 
 Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDirection direction,
                  const PixelSize& pixel) {
+  return analyse_at(recording, find_level(recording, request), direction, pixel);
+}
+
+Analysis analyse_at(const Recording& recording, const Level& level, ScanDirection direction,
+                    const PixelSize& pixel) {
   const auto& header = recording.header();
   Analysis analysis;
-  analysis.level = find_level(recording, request);
+  analysis.level = level;
   analysis.unit = pixel.known() ? std::string("m") : std::string("px");
   analysis.along_x = direction == ScanDirection::right || direction == ScanDirection::left;
   Search search(header, analysis.level, analysis.along_x);

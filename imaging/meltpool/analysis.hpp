@@ -68,6 +68,10 @@ struct Analysis {
 Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDirection direction,
                  const PixelSize& pixel);
 
+/// The pool in each frame at a level that is known.
+Analysis analyse_at(const Recording& recording, const Level& level, ScanDirection direction,
+                    const PixelSize& pixel);
+
 /// The pool of one frame with its edge, for drawing; nothing if the frame has none.
 std::optional<Region> pool_in(const Recording& recording, const Analysis& analysis,
                               const Frame& frame);

@@ -111,6 +111,7 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
       const bool known = std::isfinite(s) && s > (end == End::tail ? 0.15 : 0.03) * std::exp(start);
       patch.value.push_back(known ? s : 0);
       patch.weight.push_back(known ? 1 / u2 : 0);
+      patch.smooth.push_back(std::max(static_cast<double>(smooth[i]) - dark, 1e-3 * std::exp(start)));
       used += known ? 1 : 0;
     }
   if (used < static_cast<std::size_t>((end == End::tail ? 4 : 2) * terms)) return std::nullopt;
@@ -247,9 +248,9 @@ Vector first_guess(const Patch& patch, double height, double width) {
       const double ramp = height * std::clamp(behind * slope / width, 0.0, 1.0);
       basis(patch, patch.x(c + patch.margin_columns), patch.y(patch.margin_rows + l * fine + fine / 2),
             b.data());
-      const double weight = std::min(patch.weight[i] * patch.value[i] * patch.value[i], 1e4);
+      const double weight = std::min(patch.weight[i] * patch.smooth[i] * patch.smooth[i], 1e4);
       normal += weight * b * b.transpose();
-      right += weight * (std::log(patch.value[i]) - ramp) * b;
+      right += weight * (std::log(patch.smooth[i]) - ramp) * b;
     }
   for (int k = 0; k < terms; ++k) normal(k, k) = normal(k, k) * (1 + 1e-6) + 1e-9;
   Vector p = Vector::Zero();

@@ -37,6 +37,7 @@ struct Patch {
   double highest = 0;                    // ln S that the polynomial may reach in the margins
   cv::Mat along, across;                 // kernels
   std::vector<double> value, weight;     // lines * columns; weight 0: not compared
+  std::vector<double> smooth;            // the same values over half a pixel: where to begin
   std::vector<int> crossing;             // of every line, column where it falls to the start
   std::vector<double> mask;              // of every row of the model: part of it that is metal
 

@@ -143,10 +143,9 @@ std::pair<double, std::string> level_uncertainty(const RecordingHeader& h, const
 
 }  // namespace
 
-Budget uncertainty_budget(const Recording& recording, const Analysis& a, ScanDirection direction,
-                          const PixelSize& pixel, const Stack* stack, const std::string& no_stack,
+Budget uncertainty_budget(const Recording& recording, const Analysis& a, const PixelSize& pixel,
+                          const Stack* stack, const std::string& no_stack,
                           const ReferenceSignal* found, const BudgetSettings& s) {
-  (void)direction;
   Budget budget;
   const auto& h = recording.header();
   const double along = pixel.known() ? (a.along_x ? pixel.x : pixel.y) : 1;

@@ -21,7 +21,6 @@ struct BudgetSettings {
   double u_transmission = 0.01;       ///< 1, relative, where the level rests on it
   double u_level = 0;                 ///< 1, relative, of a level that was given
   double non_uniformity = 0.005;      ///< 1, standard deviation between the pixels' gains
-  double u_flat_field = 0;            ///< 1, unused without a correction
   long long draws = 1000;
   std::uint64_t seed = 1;
 };
@@ -56,8 +55,7 @@ struct Budget {
 /// of the draws of that input alone. Deterministic for a seed.
 /// @param stack of the same recording, or null with a reason; @param found may be null.
 Budget uncertainty_budget(const Recording& recording, const Analysis& analysis,
-                          ScanDirection direction, const PixelSize& pixel, const Stack* stack,
-                          const std::string& no_stack, const ReferenceSignal* found,
-                          const BudgetSettings& settings);
+                          const PixelSize& pixel, const Stack* stack, const std::string& no_stack,
+                          const ReferenceSignal* found, const BudgetSettings& settings);
 
 }  // namespace meltproof::imaging

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.hpp"
+#include "imaging/meltpool/report_budget.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -55,9 +56,10 @@ std::string number(double value) {
 
 }  // namespace
 
-json summary(const Recording& recording, const Analysis& a, const PixelSize& pixel,
+json summary(const Recording& recording, const Measurement& m, const PixelSize& pixel,
              const Settings& settings, const Provenance& provenance) {
   const auto& h = recording.header();
+  const Analysis& a = m.analysis;
   json j = {{"recording", h.path.filename().string()},
             {"format", h.format},
             {"sha256", h.sha256},
@@ -91,6 +93,7 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
                           {"y", pixel.y * 1e6},
                           {"u_x", pixel.u_x * 1e6},
                           {"u_y", pixel.u_y * 1e6}};
+  j["reference_signal"] = reference_json(m, h);
   if (!a.found) {
     j["provenance"] = provenance.json();
     return j;
@@ -122,6 +125,7 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
     if (settings.scan_speed && a.unit == "m")
       j["speed_relative_error"] = *a.speed / *settings.scan_speed - 1;
   }
+  if (m.budget) j["budget"] = budget_json(*m.budget, a);
   j["shown_frame"] = a.shown;
   j["provenance"] = provenance.json();
   return j;
@@ -159,7 +163,8 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
   return table;
 }
 
-std::string spoken(const Recording& recording, const Analysis& a) {
+std::string spoken(const Recording& recording, const Measurement& m) {
+  const Analysis& a = m.analysis;
   const auto& h = recording.header();
   std::string text =
       fmt::format("{}: {}, {} frame{} of {} x {} px, {}", h.path.filename().string(), h.format,
@@ -183,6 +188,15 @@ std::string spoken(const Recording& recording, const Analysis& a) {
     text += fmt::format(" (mean of {} frames, standard deviation of the length {:.3g} {})",
                         a.length.n, a.length.deviation * s, u);
   text += fmt::format(".\nLevel {:.6g} {}: {}.\n", *a.level.value, h.unit, a.level.how);
+  text += m.reference_used
+              ? "This level is independent of emissivity and transmission.\n"
+              : "Reference signal in the recording itself: none used, because " +
+                    m.reference.reason + ".\nThis level is not independent of the emissivity.\n";
+  if (m.emissivity && m.reference_used)
+    text += fmt::format("Implied emissivity: {:.3g} liquid{}.\n", m.emissivity->liquid,
+                        m.emissivity->solid ? fmt::format(", {:.3g} solid", *m.emissivity->solid)
+                                            : std::string());
+  if (m.budget) text += budget_text(*m.budget, a);
   if (a.only_incomplete)
     text +=
         "In no frame is the pool whole: it touches the border of the image or its front was not "
