@@ -84,6 +84,12 @@ struct Search {
     front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
     return finder.largest(marked, *level.value);
   }
+  /// The largest region near a place: where the largest of all does not move with the beam.
+  std::optional<Region> pool_near(const Frame& frame, Point place, double distance) {
+    if (!level.step) return finder.largest_near(frame.values, *level.value, place, distance);
+    front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
+    return finder.largest_near(marked, *level.value, place, distance);
+  }
   const Level& level;
   bool along_x;
   std::size_t width, height;
@@ -91,6 +97,63 @@ struct Search {
   std::vector<float> marked;
   std::size_t front_lines = 0;
 };
+
+/// A frame's region as tracking sees it, with the scan towards higher numbers.
+Sighting sighting_of(const FrameResult& f, ScanDirection direction) {
+  const bool along_x = direction == ScanDirection::right || direction == ScanDirection::left;
+  const Extent& along = along_x ? f.region.x : f.region.y;
+  return {f.index, !f.region.at_border(), is_forward(direction) ? along.high : -along.low,
+          along_x ? f.region.centroid.y : f.region.centroid.x, f.region.area};
+}
+
+/// Drops what does not move with the beam. In a frame whose largest region is elsewhere, the pool is
+/// looked for where it should be.
+void follow_pool(Analysis& analysis, const Recording& recording, ScanDirection direction,
+                 const PixelSize& pixel, Search& search) {
+  std::vector<Sighting> sightings;
+  std::vector<std::size_t> frame_of;
+  for (std::size_t i = 0; i < analysis.frames.size(); ++i) {
+    if (!analysis.frames[i].found) continue;
+    sightings.push_back(sighting_of(analysis.frames[i], direction));
+    frame_of.push_back(i);
+  }
+  const auto& h = recording.header();
+  const auto extent = static_cast<double>(analysis.along_x ? h.width : h.height);
+  const auto passages = find_passages(sightings, extent);
+  analysis.passages = passages.size();
+  Frame frame;
+  for (const Passage& passage : passages)
+    for (const std::size_t member : passage.members) {
+      FrameResult& result = analysis.frames[frame_of[member]];
+      Sighting seen = sightings[member];
+      result.disturbance = disturbance_of(seen, passage);
+      if (result.disturbance == Disturbance::displaced) {
+        recording.read(result.index, frame);
+        // The pool's middle lies behind its leading edge by some part of its length.
+        const double along = passage.expected_onset(result.index) -
+                             0.5 * std::sqrt(std::max(passage.area, 1.0));
+        const double signed_along = is_forward(direction) ? along : -along;
+        const Point place = analysis.along_x ? Point{signed_along, passage.across}
+                                             : Point{passage.across, signed_along};
+        auto region = search.pool_near(frame, place, std::sqrt(passage.area) + passage.tolerance);
+        if (region && region->pixels >= smallest_pool) {
+          FrameResult other = result;
+          measure(other, std::move(*region), direction, pixel);
+          other.front_lines = search.front_lines;
+          other.complete = other.complete && !(analysis.level.step && other.front_lines == 0);
+          const Sighting there = sighting_of(other, direction);
+          if (disturbance_of(there, passage) == Disturbance::none) {
+            result = std::move(other);
+            result.disturbance = Disturbance::none;
+            seen = there;
+            ++analysis.replaced;
+          }
+        }
+      }
+      if (seen.whole) result.speed_check = seen.onset - passage.expected_onset(result.index);
+      result.complete = result.complete && result.disturbance == Disturbance::none;
+    }
+}
 
 void summarise_frames(Analysis& analysis, ScanDirection direction) {
   const auto complete = std::count_if(analysis.frames.begin(), analysis.frames.end(),
@@ -189,6 +252,7 @@ Analysis analyse_at(const Recording& recording, const Level& level, ScanDirectio
     else
       analysis.reason = below_level_reason(header, analysis.level, top.values.high, top.index);
   }
+  if (analysis.found) follow_pool(analysis, recording, direction, pixel, search);
   summarise_frames(analysis, direction);
   return analysis;
 }

@@ -9,6 +9,7 @@
 #include "imaging/meltpool/contour.hpp"
 #include "imaging/meltpool/level.hpp"
 #include "imaging/meltpool/statistics.hpp"
+#include "imaging/meltpool/tracking.hpp"
 #include "imaging/recording/recording.hpp"
 
 namespace meltproof::imaging {
@@ -44,6 +45,8 @@ struct FrameResult {
   double length = 0, depth = 0;  ///< along and across the scan axis
   double area = 0;               ///< unit squared
   double orientation = 0;        ///< rad, long axis from x towards y (downwards)
+  Disturbance disturbance = Disturbance::none;  ///< what sets the region apart from the moving pool
+  std::optional<double> speed_check;  ///< px, leading edge minus its passage's straight line
   std::size_t front_lines = 0;   ///< lines of pixels in which the front itself was seen
   Region region;                 ///< px, without its edge
 };
@@ -61,6 +64,8 @@ struct Analysis {
   Series length, depth, area;
   std::optional<double>
       speed;              ///< m/s or px/s of the leading edge in the scan direction, least squares
+  std::size_t passages = 0;  ///< of a pool through the image
+  std::size_t replaced = 0;  ///< frames in which another region than the largest is the pool
   std::size_t shown = 0;  ///< the frame that tells most
 };
 

@@ -28,11 +28,14 @@ struct Input {
 /// study, correction_test.cpp), and the depth's extrapolation.
 constexpr double u_fit = 0.06;
 
-double deviation(const std::vector<double>& v) {
-  double mean = 0, squares = 0;
-  for (const double x : v) mean += x / static_cast<double>(v.size());
-  for (const double x : v) squares += (x - mean) * (x - mean);
-  return v.size() > 1 ? std::sqrt(squares / static_cast<double>(v.size() - 1)) : 0;
+/// Half the width of the middle 68.3 %: the standard deviation of a normal distribution, and finite
+/// for a t distribution of two degrees of freedom, which has none.
+double deviation(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  const auto part = [&](double q) {
+    return v[static_cast<std::size_t>(std::lround(q * static_cast<double>(v.size() - 1)))];
+  };
+  return 0.5 * (part(0.8413) - part(0.1587));
 }
 
 /// Scatter of the mean of a series: a scaled t distribution (JCGM 101, 6.4.9) with as many degrees

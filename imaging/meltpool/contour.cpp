@@ -251,6 +251,16 @@ Region RegionFinder::outline(std::int32_t label, float level) {
 }
 
 std::optional<Region> RegionFinder::largest(std::span<const float> values, double level) {
+  return find(values, level, nullptr, 0);
+}
+
+std::optional<Region> RegionFinder::largest_near(std::span<const float> values, double level,
+                                                 Point place, double distance) {
+  return find(values, level, &place, distance);
+}
+
+std::optional<Region> RegionFinder::find(std::span<const float> values, double level,
+                                         const Point* place, double distance) {
   const auto threshold = static_cast<float>(level);
   mend(values, threshold);
   std::fill(labels_.begin(), labels_.end(), 0);
@@ -264,7 +274,16 @@ std::optional<Region> RegionFinder::largest(std::span<const float> values, doubl
     for (std::size_t i = row; i < row + width; ++i) {
       if (!(values_[i] >= threshold) || labels_[i] != 0) continue;
       flood(i, ++label, threshold);
-      if (pixels_.size() > largest_.size()) {
+      const auto near = [&] {
+        double sx = 0, sy = 0;
+        for (const std::size_t k : pixels_) {
+          sx += static_cast<double>(k % width);
+          sy += static_cast<double>(k / width);
+        }
+        const auto n = static_cast<double>(pixels_.size());
+        return std::hypot(sx / n - place->x, sy / n - place->y) <= distance;
+      };
+      if (pixels_.size() > largest_.size() && (place == nullptr || near())) {
         largest_ = pixels_;
         best = label;
       }

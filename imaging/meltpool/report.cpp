@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/meltpool/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -46,6 +47,8 @@ json length_budget(const Series& s, const Analysis& a, double pixel, double u_pi
 
 std::string status_of(const FrameResult& f) {
   if (!f.found) return "no pool";
+  if (f.disturbance == Disturbance::displaced) return "not with the beam";
+  if (f.disturbance == Disturbance::enlarged) return "disturbed";
   if (f.region.at_border()) return "at the border";
   return f.complete ? "complete" : "front not seen";
 }
@@ -98,6 +101,10 @@ json summary(const Recording& recording, const Measurement& m, const PixelSize& 
     j["provenance"] = provenance.json();
     return j;
   }
+  const auto disturbed = [&](Disturbance d) {
+    return std::count_if(a.frames.begin(), a.frames.end(),
+                         [d](const FrameResult& f) { return f.disturbance == d; });
+  };
   const std::string unit = unit_of(a);
   const double along = a.along_x ? pixel.x : pixel.y, across = a.along_x ? pixel.y : pixel.x;
   const double u_along = a.along_x ? pixel.u_x : pixel.u_y,
@@ -107,6 +114,10 @@ json summary(const Recording& recording, const Measurement& m, const PixelSize& 
   j["area_" + unit + "2"] = {{"mean", a.area.mean * scale_of(a) * scale_of(a)},
                              {"sd", a.area.deviation * scale_of(a) * scale_of(a)},
                              {"n", a.area.n}};
+  j["tracking"] = {{"passages", a.passages},
+                   {"frames_not_with_the_beam", disturbed(Disturbance::displaced)},
+                   {"frames_disturbed", disturbed(Disturbance::enlarged)},
+                   {"frames_with_another_region", a.replaced}};
   j["frames_used"] = a.only_incomplete
                          ? "all with a pool: in none is it whole (see status in frames.csv), "
                            "so lengths are lower bounds"
@@ -142,7 +153,7 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       "saturated [px],under range [px],dead [px],found [1],onset [{0}],end [{0}],length "
       "[{0}],depth [{0}],area "
       "[{0}^2],"
-      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text]\n",
+      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text],speed check [px]\n",
       u);
   for (const auto& f : a.frames) {
     table += fmt::format(
@@ -153,12 +164,13 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       table += fmt::format("{},{},{:.10g},", f.counts->low, f.counts->high, f.counts->mean);
     table += fmt::format("{},{},{},{},", f.saturated, f.under_range, f.dead, f.found ? 1 : 0);
     if (f.found)
-      table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{}\n",
+      table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{},{}\n",
                            f.onset * s, f.end * s, f.length * s, f.depth * s, f.area * s * s,
                            f.region.centroid.x, f.region.centroid.y,
-                           f.orientation * 180 / std::numbers::pi, f.region.pixels, status_of(f));
+                           f.orientation * 180 / std::numbers::pi, f.region.pixels, status_of(f),
+                           f.speed_check ? fmt::format("{:.3f}", *f.speed_check) : "");
     else
-      table += ",,,,,,,,,no pool\n";
+      table += ",,,,,,,,,no pool,\n";
   }
   return table;
 }

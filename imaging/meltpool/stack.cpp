@@ -17,12 +17,6 @@ constexpr std::size_t most_frames = 400, fewest_frames = 12, fewest_values = 3;
 constexpr double ahead = 8;  // px kept before the leading edge: the cold plate
 constexpr auto nothing = std::numeric_limits<float>::quiet_NaN();
 
-double median(std::vector<double> v) {
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
-}
-
 /// Leading edge in pixels counted along the scan.
 double onset_of(const FrameResult& f, const RecordingHeader& h, ScanDirection direction) {
   switch (direction) {
@@ -36,25 +30,6 @@ double onset_of(const FrameResult& f, const RecordingHeader& h, ScanDirection di
       break;
   }
   return static_cast<double>(h.height) - 1 - f.region.y.low;
-}
-
-struct Line {
-  double slope = 0, intercept = 0, deviation = 0;
-};
-
-/// Median of the slopes of all pairs, median of the intercepts that follow, and the robust standard
-/// deviation of what is left.
-Line robust_line(const std::vector<double>& x, const std::vector<double>& y) {
-  std::vector<double> slopes, rest;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    for (std::size_t j = i + 1; j < x.size(); ++j) slopes.push_back((y[j] - y[i]) / (x[j] - x[i]));
-  Line line;
-  line.slope = median(slopes);
-  for (std::size_t i = 0; i < x.size(); ++i) rest.push_back(y[i] - line.slope * x[i]);
-  line.intercept = median(rest);
-  for (auto& r : rest) r = std::abs(r - line.intercept);
-  line.deviation = 1.4826 * median(rest);
-  return line;
 }
 
 /// Mean of the values near their median, and its standard error.
@@ -107,7 +82,7 @@ StackResult stack_frames(const Recording& recording, const Analysis& analysis,
     for (auto* v : {&number, &onset, &length})
       *v = {v->begin() + first, v->begin() + first + static_cast<std::ptrdiff_t>(most_frames)};
   }
-  const Line line = robust_line(number, onset);
+  const RobustLine line = robust_line(number, onset);
   if (!(std::abs(line.slope) >= 0.05) || std::abs(line.slope) > 0.5 * median(length))
     return {{}, fmt::format("the pool moves by {:.3g} px a frame, where between 0.05 px and half "
                             "its length are needed to average it in its own frame",

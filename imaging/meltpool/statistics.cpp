@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace meltproof::imaging {
@@ -58,6 +59,25 @@ Series summarise(std::span<const double> v) {
   }
   s.effective = std::max(1.0, n / (1 + 2 * rho_sum));
   return s;
+}
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+RobustLine robust_line(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> slopes, rest;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = i + 1; j < x.size(); ++j) slopes.push_back((y[j] - y[i]) / (x[j] - x[i]));
+  RobustLine line;
+  line.slope = median(std::move(slopes));
+  for (std::size_t i = 0; i < x.size(); ++i) rest.push_back(y[i] - line.slope * x[i]);
+  line.intercept = median(rest);
+  for (auto& r : rest) r = std::abs(r - line.intercept);
+  line.deviation = 1.4826 * median(std::move(rest));
+  return line;
 }
 
 double slope(std::span<const double> x, std::span<const double> y) {
