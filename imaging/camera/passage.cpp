@@ -59,7 +59,7 @@ std::function<RayHit(double, double)> solidifying_field(const PassageSettings& s
   };
 }
 
-Passage film_passage(const PassageSettings& s) {
+FilmedPassage film_passage(const PassageSettings& s) {
   const Camera camera(s.camera);
   const cv::Mat fine = expose_once(s, camera);
   const auto samples = static_cast<double>(s.camera.supersampling);
@@ -67,7 +67,7 @@ Passage film_passage(const PassageSettings& s) {
   const auto height = static_cast<std::size_t>(s.camera.height);
   const RosenthalPool pool = rosenthal_pool(at_liquidus_enthalpy(s));
 
-  Passage passage;
+  FilmedPassage passage;
   passage.length = pool.length;
   passage.depth = s.source.view == "side" ? 0.5 * pool.width : pool.width;
   passage.step = s.source.scan_speed / s.camera.frame_rate / s.camera.pixel_size;

@@ -47,7 +47,7 @@ struct PassageSettings {
 };
 
 /// The frames of a passage and what is true of it.
-struct Passage {
+struct FilmedPassage {
   std::vector<std::vector<float>> frames;  ///< each height * width, counts, row-major, unrounded
   double length = 0, depth = 0;            ///< m, exact size of the pool (depth: width from above)
   double step = 0;                         ///< px the pool moves between frames
@@ -63,6 +63,6 @@ std::function<RayHit(double, double)> solidifying_field(const PassageSettings& s
 /// Films a pool that keeps its shape: it is exposed once on the fine grid with point spread, motion
 /// and pixels' areas, and every frame is that picture at its own sub-pixel place (cubic
 /// interpolation, 1/8 px apart). @throws InputError as rosenthal_pool().
-Passage film_passage(const PassageSettings& settings);
+FilmedPassage film_passage(const PassageSettings& settings);
 
 }  // namespace meltproof::imaging

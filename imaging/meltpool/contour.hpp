@@ -82,6 +82,7 @@ class RegionFinder {
   std::ptrdiff_t width_, height_;
   Interpolation interpolation_;
   std::span<const float> values_;
+  double log_level_ = 0;
   std::vector<float> mended_;
   std::vector<std::int32_t> labels_;
   std::vector<std::size_t> pixels_, stack_, largest_;

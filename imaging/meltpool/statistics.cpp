@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
@@ -24,7 +25,9 @@ double mann_kendall(std::span<const double> all) {
   std::map<double, double> ties;
   for (std::size_t i = 0; i < v.size(); ++i) {
     ties[v[i]] += 1;
-    for (std::size_t j = i + 1; j < v.size(); ++j) s += v[j] > v[i] ? 1 : v[j] < v[i] ? -1 : 0;
+    std::int64_t rising = 0;
+    for (std::size_t j = i + 1; j < v.size(); ++j) rising += (v[j] > v[i]) - (v[j] < v[i]);
+    s += static_cast<double>(rising);
   }
   double variance = n * (n - 1) * (2 * n + 5);
   for (const auto& [value, t] : ties) variance -= t * (t - 1) * (2 * t + 5);
