@@ -23,6 +23,8 @@ struct Settings {
   BudgetSettings budget;
   ReferenceRules rules;
   long long fewest_lines = 3;
+  std::filesystem::path spectral_response, window_spectrum;
+  std::filesystem::path uniform_cold, uniform_hot;
   std::filesystem::path calibration;
   LevelRequest request() const {
     return {level, reference_temperature, emissivity, emissivity_liquid, transmission};
