@@ -26,15 +26,17 @@ cv::Mat expose_once(const PassageSettings& s, const Camera& camera) {
   wide.width = 2 * s.camera.width + 8;
   const double motion = s.source.scan_speed * s.camera.integration_time;
   const SceneGrid grid(wide, 0, motion);
-  const cv::Mat signal = camera.expose_finely(render_scene(solidifying_field(s), grid), grid, motion);
+  const cv::Mat signal =
+      camera.expose_finely(render_scene(solidifying_field(s), grid), grid, motion);
   return signal(grid.image());
 }
 
 /// Cubic interpolation (Keys 1981, a = -1/2) between four samples.
 double cubic(const double* p, double t) {
-  return p[1] + 0.5 * t *
-                    (p[2] - p[0] +
-                     t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
+  return p[1] +
+         0.5 * t *
+             (p[2] - p[0] +
+              t * (2 * p[0] - 5 * p[1] + 4 * p[2] - p[3] + t * (3 * (p[1] - p[2]) + p[3] - p[0])));
 }
 
 }  // namespace
@@ -49,9 +51,9 @@ std::function<RayHit(double, double)> solidifying_field(const PassageSettings& s
   const double liquid = s.camera.emissivity_liquid, solid = s.camera.emissivity_solid;
   return [=](double u, double v) -> RayHit {
     if (side && v > 0) return {std::numeric_limits<double>::quiet_NaN(), 1};
-    const double enthalpy = std::min(side ? rosenthal_temperature(source, u, 0, v)
-                                          : rosenthal_temperature(source, u, v, 0),
-                                     source.peak_temperature);
+    const double enthalpy = std::min(
+        side ? rosenthal_temperature(source, u, 0, v) : rosenthal_temperature(source, u, v, 0),
+        source.peak_temperature);
     if (enthalpy >= solidus + span) return {enthalpy - latent, liquid};
     if (enthalpy <= solidus || !(span > 0)) return {enthalpy, solid};
     const double fraction = (enthalpy - solidus) / span;

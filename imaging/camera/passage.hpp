@@ -39,11 +39,11 @@ struct PassageSettings {
   CameraSettings camera;
   RosenthalSettings source;
   Solidification solidification;
-  double start = 0;              ///< px, image column of the source at the first frame
-  std::vector<Bright> bright;    ///< spatter and plume
-  double read_noise = 0;         ///< counts, standard deviation
-  double non_uniformity = 0;     ///< 1, standard deviation of the pixels' gains
-  std::uint64_t seed = 1;        ///< of noise and gains
+  double start = 0;            ///< px, image column of the source at the first frame
+  std::vector<Bright> bright;  ///< spatter and plume
+  double read_noise = 0;       ///< counts, standard deviation
+  double non_uniformity = 0;   ///< 1, standard deviation of the pixels' gains
+  std::uint64_t seed = 1;      ///< of noise and gains
 };
 
 /// The frames of a passage and what is true of it.

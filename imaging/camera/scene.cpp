@@ -109,8 +109,8 @@ cv::Mat Camera::expose(const Scene& scene, const SceneGrid& grid, double motion)
 cv::Mat Camera::expose_finely(const Scene& scene, const SceneGrid& grid, double motion) const {
   const int samples = static_cast<int>(settings_.supersampling);
   cv::Mat mean;
-  cv::blur(optical_radiance(scene, grid, motion), mean, {samples, samples}, {samples / 2, samples / 2},
-           cv::BORDER_REPLICATE);
+  cv::blur(optical_radiance(scene, grid, motion), mean, {samples, samples},
+           {samples / 2, samples / 2}, cv::BORDER_REPLICATE);
   return to_counts(mean);
 }
 

@@ -75,8 +75,7 @@ FrameResult describe(const Frame& frame) {
       if (frame.status[i] != PixelStatus::dead) alive.push_back(frame.values[i]);
     result.values = range_of(alive);
   }
-  if (!frame.counts.empty())
-    result.counts = range_of(frame.counts);
+  if (!frame.counts.empty()) result.counts = range_of(frame.counts);
   return result;
 }
 
@@ -137,8 +136,8 @@ Sighting sighting_of(const FrameResult& f, ScanDirection direction) {
           along_x ? f.region.centroid.y : f.region.centroid.x, f.region.area};
 }
 
-/// Drops what does not move with the beam. In a frame whose largest region is elsewhere, the pool is
-/// looked for where it should be.
+/// Drops what does not move with the beam. In a frame whose largest region is elsewhere, the pool
+/// is looked for where it should be.
 void follow_pool(Analysis& analysis, const Recording& recording, ScanDirection direction,
                  const PixelSize& pixel, Search& search) {
   std::vector<Sighting> sightings;
@@ -161,8 +160,8 @@ void follow_pool(Analysis& analysis, const Recording& recording, ScanDirection d
       if (result.disturbance == Disturbance::displaced) {
         recording.read(result.index, frame);
         // The pool's middle lies behind its leading edge by some part of its length.
-        const double along = passage.expected_onset(result.index) -
-                             0.5 * std::sqrt(std::max(passage.area, 1.0));
+        const double along =
+            passage.expected_onset(result.index) - 0.5 * std::sqrt(std::max(passage.area, 1.0));
         const double signed_along = is_forward(direction) ? along : -along;
         const Point place = analysis.along_x ? Point{signed_along, passage.across}
                                              : Point{passage.across, signed_along};

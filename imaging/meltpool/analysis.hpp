@@ -42,13 +42,13 @@ struct FrameResult {
                           ///< level has a step
   double onset = 0,
          end = 0;  ///< leading edge and tail along the scan axis, from the left or upper border
-  double length = 0, depth = 0;  ///< along and across the scan axis
-  double area = 0;               ///< unit squared
-  double orientation = 0;        ///< rad, long axis from x towards y (downwards)
+  double length = 0, depth = 0;                 ///< along and across the scan axis
+  double area = 0;                              ///< unit squared
+  double orientation = 0;                       ///< rad, long axis from x towards y (downwards)
   Disturbance disturbance = Disturbance::none;  ///< what sets the region apart from the moving pool
   std::optional<double> speed_check;  ///< px, leading edge minus its passage's straight line
-  std::size_t front_lines = 0;   ///< lines of pixels in which the front itself was seen
-  Region region;                 ///< px, without its edge
+  std::size_t front_lines = 0;        ///< lines of pixels in which the front itself was seen
+  Region region;                      ///< px, without its edge
 };
 
 /// The result of a recording.
@@ -63,10 +63,10 @@ struct Analysis {
   bool only_incomplete = false;
   Series length, depth, area;
   std::optional<double>
-      speed;              ///< m/s or px/s of the leading edge in the scan direction, least squares
+      speed;  ///< m/s or px/s of the leading edge in the scan direction, least squares
   std::size_t passages = 0;  ///< of a pool through the image
   std::size_t replaced = 0;  ///< frames in which another region than the largest is the pool
-  std::size_t shown = 0;  ///< the frame that tells most
+  std::size_t shown = 0;     ///< the frame that tells most
 };
 
 /// Finds the level, then the pool in each frame.

@@ -57,7 +57,8 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
     tip = static_cast<std::ptrdiff_t>(l);
     // The hottest part, under the beam, is no tail: it may be flat, saturated or boiling.
     tail = peak;
-    while (tail > 0 && static_cast<double>(v[tail]) - dark > 0.8 * (static_cast<double>(v[peak]) - dark))
+    while (tail > 0 &&
+           static_cast<double>(v[tail]) - dark > 0.8 * (static_cast<double>(v[peak]) - dark))
       --tail;
   }
   if (tip < 0) return std::nullopt;
@@ -94,9 +95,8 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
   patch.even = edge.present;
   patch.centre_line = edge.present ? edge.row : static_cast<double>(tip);
   for (int row = 0; row < patch.height(); ++row)
-    patch.mask.push_back(edge.present
-                             ? std::clamp((patch.row(row) - edge.row) * fine + 0.5, 0.0, 1.0)
-                             : 1.0);
+    patch.mask.push_back(
+        edge.present ? std::clamp((patch.row(row) - edge.row) * fine + 0.5, 0.0, 1.0) : 1.0);
   for (std::ptrdiff_t l = first_line; l <= last_line; ++l)
     patch.crossing.push_back(static_cast<int>(crossing[static_cast<std::size_t>(l)] - from));
   const double per_column = static_cast<double>(stack.frames) / Stack::samples;
@@ -111,7 +111,8 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
       const bool known = std::isfinite(s) && s > (end == End::tail ? 0.15 : 0.03) * std::exp(start);
       patch.value.push_back(known ? s : 0);
       patch.weight.push_back(known ? 1 / u2 : 0);
-      patch.smooth.push_back(std::max(static_cast<double>(smooth[i]) - dark, 1e-3 * std::exp(start)));
+      patch.smooth.push_back(
+          std::max(static_cast<double>(smooth[i]) - dark, 1e-3 * std::exp(start)));
       used += known ? 1 : 0;
     }
   if (used < static_cast<std::size_t>((end == End::tail ? 4 : 2) * terms)) return std::nullopt;
@@ -173,9 +174,8 @@ Linearised linearise(const Patch& patch, const Vector& p, bool derivatives) {
       if (!derivatives) continue;
       for (int k = 0; k < parameters; ++k)
         j(k) = derivative[static_cast<std::size_t>(k)].at<double>(row, column);
-      result.normal[static_cast<std::size_t>(l)]
-          .selfadjointView<Eigen::Lower>()
-          .rankUpdate(j, patch.weight[i]);
+      result.normal[static_cast<std::size_t>(l)].selfadjointView<Eigen::Lower>().rankUpdate(
+          j, patch.weight[i]);
       result.gradient[static_cast<std::size_t>(l)].noalias() += patch.weight[i] * residual * j;
     }
   return result;
@@ -246,8 +246,8 @@ Vector first_guess(const Patch& patch, double height, double width) {
       const double behind =
           (patch.crossing[static_cast<std::size_t>(l)] - c) / static_cast<double>(Stack::samples);
       const double ramp = height * std::clamp(behind * slope / width, 0.0, 1.0);
-      basis(patch, patch.x(c + patch.margin_columns), patch.y(patch.margin_rows + l * fine + fine / 2),
-            b.data());
+      basis(patch, patch.x(c + patch.margin_columns),
+            patch.y(patch.margin_rows + l * fine + fine / 2), b.data());
       const double weight = std::min(patch.weight[i] * patch.smooth[i] * patch.smooth[i], 1e4);
       normal += weight * b * b.transpose();
       right += weight * (std::log(patch.smooth[i]) - ramp) * b;
@@ -259,7 +259,8 @@ Vector first_guess(const Patch& patch, double height, double width) {
   p(interval) = width;
   for (int l = 0; l < patch.lines; ++l)
     p(theta_star) +=
-        theta_at(patch, p, patch.x(patch.crossing[static_cast<std::size_t>(l)] + patch.margin_columns),
+        theta_at(patch, p,
+                 patch.x(patch.crossing[static_cast<std::size_t>(l)] + patch.margin_columns),
                  patch.y(patch.margin_rows + l * fine + fine / 2)) /
         patch.lines;
   return p;

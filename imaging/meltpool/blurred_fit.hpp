@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Least squares of a blurred model with a smooth field and a front: the machinery of tail_model.hpp.
+// Least squares of a blurred model with a smooth field and a front: the machinery of
+// tail_model.hpp.
 #pragma once
 
 #include <optional>
@@ -16,10 +17,11 @@ inline constexpr int along_order = 4, across_order = 4;  // of the polynomial
 inline constexpr int terms = (along_order + 1) * (across_order + 1);
 inline constexpr int parameters = terms + 3;
 inline constexpr int theta_star = terms, rise = terms + 1, interval = terms + 2;
-inline constexpr int fine = 3;            // rows of the model a line: the front bends within a pixel
-inline constexpr double softness = 0.03;  // of theta, rounds the corners of F by a quarter of a pixel
+inline constexpr int fine = 3;  // rows of the model a line: the front bends within a pixel
+inline constexpr double softness =
+    0.03;  // of theta, rounds the corners of F by a quarter of a pixel
 inline constexpr double leading_reach = 3;  // px
-inline constexpr double reach = 7;        // px along a line on either side of the start
+inline constexpr double reach = 7;          // px along a line on either side of the start
 inline constexpr double narrowest = 0.02, widest = 1.2;  // interval of theta
 
 /// Coefficients of the polynomial (powers of y within powers of x), then theta*, rise, interval.
@@ -32,14 +34,14 @@ struct Patch {
   int columns = 0, lines = 0;
   int margin_columns = 0, margin_rows = 0;
   double centre_column = 0, centre_line = 0;
-  bool even = false;                     // a side view: the surface is at centre_line
-  double scale = 6;                      // px, makes the polynomial's arguments of order one
-  double highest = 0;                    // ln S that the polynomial may reach in the margins
-  cv::Mat along, across;                 // kernels
-  std::vector<double> value, weight;     // lines * columns; weight 0: not compared
-  std::vector<double> smooth;            // the same values over half a pixel: where to begin
-  std::vector<int> crossing;             // of every line, column where it falls to the start
-  std::vector<double> mask;              // of every row of the model: part of it that is metal
+  bool even = false;                  // a side view: the surface is at centre_line
+  double scale = 6;                   // px, makes the polynomial's arguments of order one
+  double highest = 0;                 // ln S that the polynomial may reach in the margins
+  cv::Mat along, across;              // kernels
+  std::vector<double> value, weight;  // lines * columns; weight 0: not compared
+  std::vector<double> smooth;         // the same values over half a pixel: where to begin
+  std::vector<int> crossing;          // of every line, column where it falls to the start
+  std::vector<double> mask;           // of every row of the model: part of it that is metal
 
   int width() const { return columns + 2 * margin_columns; }
   int height() const { return lines * fine + 2 * margin_rows; }

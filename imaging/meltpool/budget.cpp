@@ -169,8 +169,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
     const bool front = found != nullptr && found->signature != Signature::none;
     if (a.level.interpolation.logarithmic && (front || !a.level.step)) {
       const double level = front ? found->blurred_signal : *a.level.value;
-      edge = refined_plate_edge(*stack, dark, level, blur,
-                                find_plate_edge(*stack, dark, level, blur));
+      edge =
+          refined_plate_edge(*stack, dark, level, blur, find_plate_edge(*stack, dark, level, blur));
       pool = corrected_pool(*stack, a.level, dark, blur, edge, found);
       if (!pool) budget.reason = "the ends of the mean pool could not be fitted";
     } else {
@@ -183,16 +183,21 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
   budget.corrected = pool.has_value();
 
   std::vector<Input> inputs;
-  const auto normal = [](gsl_rng* r, double sigma) { return gsl_ran_gaussian_ziggurat(r, 1) * sigma; };
+  const auto normal = [](gsl_rng* r, double sigma) {
+    return gsl_ran_gaussian_ziggurat(r, 1) * sigma;
+  };
   const auto add = [&](std::string name, std::string type, std::string how, auto draw,
                        double correction_length = 0, double correction_depth = 0) {
     inputs.push_back({{std::move(name), std::move(type), 0, 0, correction_length, correction_depth,
                        std::move(how)},
                       std::move(draw)});
   };
-  add("scatter between frames", "A", fmt::format("t distribution, {:.1f} independent frames of {}",
-                                                 a.length.effective, a.length.n),
-      [&](gsl_rng* r) { return Effect{draw_mean(r, a.length), draw_mean(r, a.depth)}; });
+  add("scatter between frames", "A",
+      fmt::format("t distribution, {:.1f} independent frames of {}", a.length.effective,
+                  a.length.n),
+      [&](gsl_rng* r) {
+        return Effect{draw_mean(r, a.length), draw_mean(r, a.depth)};
+      });
   add("pixel size", "B", "of the calibration", [&, u_along, u_across](gsl_rng* r) {
     return Effect{a.length.mean * normal(r, u_along), a.depth.mean * normal(r, u_across)};
   });
@@ -204,7 +209,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
           return Effect{e.length - a.length.mean, e.depth - a.depth.mean};
         });
   const auto uneven = std::make_shared<UnevenPixels>(recording, a, pixel, s.non_uniformity);
-  add("non-uniformity of the pixels", "B", fmt::format("gains differ by {:.2g} %", 100 * s.non_uniformity),
+  add("non-uniformity of the pixels", "B",
+      fmt::format("gains differ by {:.2g} %", 100 * s.non_uniformity),
       [uneven](gsl_rng* r) { return (*uneven)(r); });
   if (pool) {
     const auto [u_log, how] = level_uncertainty(h, a, s);
@@ -222,13 +228,16 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
       });
     const double noise = along * pool->blurred_length - a.length.mean;
     const double noise_depth = across * pool->blurred_depth - a.depth.mean;
-    add("noise and sampling of single frames", "A",
+    add(
+        "noise and sampling of single frames", "A",
         "mean of the frames' outlines against the outline of the mean pool",
         [&](gsl_rng* r) {
-          return Effect{along * normal(r, std::hypot(pool->u_onset, pool->front_found ? 0 : pool->u_end)), 0};
+          return Effect{
+              along * normal(r, std::hypot(pool->u_onset, pool->front_found ? 0 : pool->u_end)), 0};
         },
         noise, noise_depth);
-    add("point spread, motion and pixels", "B",
+    add(
+        "point spread, motion and pixels", "B",
         fmt::format("ends by a model blurred by {:.2f} px along and {:.2f} px across; sigma of the "
                     "point spread {:.2g} +- {:.2g} px, motion {:.2f} px",
                     budget.blur_along, budget.blur_across, s.point_spread, s.u_point_spread, shift),
@@ -247,8 +256,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
         "what the fits leave on analytic pools; the depth's by half the extrapolation's own doubt",
         [&](gsl_rng* r) {
           return Effect{along * std::sqrt(2.0) * normal(r, u_fit),
-                        across * (normal(r, u_fit) + (2 * gsl_rng_uniform(r) - 1) *
-                                                         std::max(pool->doubt_depth, 0.2))};
+                        across * (normal(r, u_fit) +
+                                  (2 * gsl_rng_uniform(r) - 1) * std::max(pool->doubt_depth, 0.2))};
         });
     if (edge.present)
       add("border of the plate", "A",
@@ -260,7 +269,9 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
   } else {
     const double contour = 0.1;
     add("edge between pixels", "B", "where the edge falls between pixels (contour_test.cpp)",
-        [=](gsl_rng* r) { return Effect{along * normal(r, contour), across * normal(r, contour)}; });
+        [=](gsl_rng* r) {
+          return Effect{along * normal(r, contour), across * normal(r, contour)};
+        });
   }
 
   const Random random(gsl_rng_alloc(gsl_rng_mt19937), &gsl_rng_free);
@@ -298,7 +309,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
     e.high = part(0.975);
     return e;
   };
-  budget.length = estimate(length, a.length.mean, [](const auto& r) { return r.correction_length; });
+  budget.length =
+      estimate(length, a.length.mean, [](const auto& r) { return r.correction_length; });
   budget.depth = estimate(depth, a.depth.mean, [](const auto& r) { return r.correction_depth; });
   return budget;
 }

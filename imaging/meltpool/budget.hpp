@@ -13,14 +13,14 @@ namespace meltproof::imaging {
 
 /// What is known of the inputs. Standard uncertainties.
 struct BudgetSettings {
-  double point_spread = 0.8;          ///< px, sigma of a Gaussian
-  double u_point_spread = 0.1;        ///< px
-  double u_integration_time = 0.01;   ///< 1, relative
-  double u_reference_temperature = 5; ///< K: how well composition fixes the liquidus
-  double u_emissivity = 0.1;          ///< 1, relative, where the level rests on an emissivity
-  double u_transmission = 0.01;       ///< 1, relative, where the level rests on it
-  double u_level = 0;                 ///< 1, relative, of a level that was given
-  double non_uniformity = 0.005;      ///< 1, standard deviation between the pixels' gains
+  double point_spread = 0.8;           ///< px, sigma of a Gaussian
+  double u_point_spread = 0.1;         ///< px
+  double u_integration_time = 0.01;    ///< 1, relative
+  double u_reference_temperature = 5;  ///< K: how well composition fixes the liquidus
+  double u_emissivity = 0.1;           ///< 1, relative, where the level rests on an emissivity
+  double u_transmission = 0.01;        ///< 1, relative, where the level rests on it
+  double u_level = 0;                  ///< 1, relative, of a level that was given
+  double non_uniformity = 0.005;       ///< 1, standard deviation between the pixels' gains
   long long draws = 1000;
   std::uint64_t seed = 1;
 };
@@ -51,8 +51,8 @@ struct Budget {
   double plate_row = 0;                    ///< px from the image's first border
 };
 
-/// Adds up what is uncertain, by draws from every input at once; every row is the standard deviation
-/// of the draws of that input alone. Deterministic for a seed.
+/// Adds up what is uncertain, by draws from every input at once; every row is the standard
+/// deviation of the draws of that input alone. Deterministic for a seed.
 /// @param stack of the same recording, or null with a reason; @param found may be null.
 Budget uncertainty_budget(const Recording& recording, const Analysis& analysis,
                           const PixelSize& pixel, const Stack* stack, const std::string& no_stack,

@@ -120,8 +120,8 @@ std::optional<CorrectedPool> corrected_pool(const Stack& stack, const Level& lev
     PlateEdge up = edge, down = edge;
     up.row += d_row;
     down.row -= d_row;
-    pool.by_plate_edge = derivative(length_with(blur, up, log_level),
-                                    length_with(blur, down, log_level), 2 * d_row);
+    pool.by_plate_edge =
+        derivative(length_with(blur, up, log_level), length_with(blur, down, log_level), 2 * d_row);
   }
 
   const Stack whole = edge.present ? mirrored(stack, dark, edge, blur) : stack;

@@ -14,12 +14,12 @@ struct CorrectedPool {
   double onset = 0, u_onset = 0;                 ///< without blur
   double end = 0, u_end = 0;                     ///< without blur; the front, where it was found
   double depth = 0;                              ///< without blur
-  double doubt_depth = 0;     ///< half of a width within which the extrapolation lies
-  double by_log_level = 0;    ///< change of the length for one unit of ln(S - dark)
+  double doubt_depth = 0;   ///< half of a width within which the extrapolation lies
+  double by_log_level = 0;  ///< change of the length for one unit of ln(S - dark)
   double depth_by_log_level = 0;
-  double by_blur = 0;         ///< change of the length for one px of the point spread's sigma
-  double by_plate_edge = 0;   ///< change of the length for one px of the plate's border
-  bool front_found = false;   ///< the end is the front of find_reference_signal()
+  double by_blur = 0;        ///< change of the length for one px of the point spread's sigma
+  double by_plate_edge = 0;  ///< change of the length for one px of the plate's border
+  bool front_found = false;  ///< the end is the front of find_reference_signal()
   double length() const { return onset - end; }
 };
 

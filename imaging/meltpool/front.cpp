@@ -40,7 +40,8 @@ std::optional<double> find_front(const Line& line, const EmissivityStep& step,
     logs.push_back(std::log(std::max(line.at(i), floor)));
   /// The change of ln S from one pixel to the next one outwards: negative where the signal falls.
   const auto change = [&](std::ptrdiff_t i) {
-    return logs[static_cast<std::size_t>(i + 1 - first)] - logs[static_cast<std::size_t>(i - first)];
+    return logs[static_cast<std::size_t>(i + 1 - first)] -
+           logs[static_cast<std::size_t>(i - first)];
   };
   double best = 0.25 * std::log(solid / liquid);
   std::optional<double> front;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/meltpool/measurement.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -35,6 +38,21 @@ Level level_of(const ReferenceSignal& found, double dark, double reference_tempe
   return level;
 }
 
+/// A level at a quarter of the recording's own brightness: what registers the frames must scale
+/// with the scene, or the reference signal would not.
+Level registration_level(const Level& level, const Analysis& analysis) {
+  const double dark = level.interpolation.dark;
+  double highest = dark;
+  for (const auto& f : analysis.frames) highest = std::max(highest, f.values.high);
+  std::vector<double> bright;
+  for (const auto& f : analysis.frames)
+    if (f.values.high - dark >= 0.5 * (highest - dark)) bright.push_back(f.values.high);
+  Level own = level;
+  own.step.reset();
+  own.value = dark + 0.25 * (median(bright) - dark);
+  return own;
+}
+
 }  // namespace
 
 ReferenceSearch parse_reference_search(const std::string& text) {
@@ -56,6 +74,15 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
   m.analysis = analyse_at(recording, level, request.direction, request.pixel);
   if (!m.analysis.found) return m;
   StackResult stack = stack_frames(recording, m.analysis, request.direction);
+  const bool search = request.search != ReferenceSearch::off && logarithmic &&
+                      h.quantity != SignalQuantity::temperature;
+  if (search) {
+    StackResult own = stack_frames(recording,
+                                   analyse_at(recording, registration_level(level, m.analysis),
+                                              request.direction, request.pixel),
+                                   request.direction);
+    if (own.stack || !stack.stack) stack = std::move(own);
+  }
 
   if (request.search == ReferenceSearch::off) {
     m.reference.reason = "it was not looked for (reference_signal = \"off\")";
@@ -69,11 +96,11 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
   } else {
     const double shift = stack.stack->speed * h.integration_time * h.frame_rate;
     const Blur blur = total_blur(request.budget.point_spread, shift);
-    const double at = *m.analysis.level.value;
+    const double at = *registration_level(level, m.analysis).value;
     const PlateEdge edge = refined_plate_edge(*stack.stack, dark, at, blur,
                                               find_plate_edge(*stack.stack, dark, at, blur));
-    m.reference = find_reference_signal(*stack.stack, dark, blur, edge, request.rules,
-                                        request.budget.seed);
+    m.reference =
+        find_reference_signal(*stack.stack, dark, blur, edge, request.rules, request.budget.seed);
     const double temperature =
         request.level.reference_temperature.value_or(default_reference_temperature);
     if (m.reference.signature != Signature::none && h.radiometry) {
@@ -91,8 +118,8 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
             temperature, ImpliedEmissivity::least, ImpliedEmissivity::most);
       }
     }
-    const bool told = request.level.level || request.level.emissivity ||
-                      request.level.emissivity_liquid;
+    const bool told =
+        request.level.level || request.level.emissivity || request.level.emissivity_liquid;
     if (m.reference.signature != Signature::none &&
         (!told || request.search == ReferenceSearch::required)) {
       m.reference_used = true;
@@ -102,8 +129,8 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
   }
   if (request.search == ReferenceSearch::required && !m.reference_used) {
     m.analysis.found = false;
-    m.analysis.reason = "The reference signal was not found in the recording: " +
-                        m.reference.reason + ".";
+    m.analysis.reason =
+        "The reference signal was not found in the recording: " + m.reference.reason + ".";
     return m;
   }
   if (m.analysis.found)

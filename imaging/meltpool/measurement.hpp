@@ -41,8 +41,8 @@ struct Measurement {
   bool emissivity_independent() const { return reference_used; }
 };
 
-/// Finds the pool at the best level that the request allows, averages it in its own frame, looks for
-/// the reference signal there and, where it is found, finds the pool anew at it.
+/// Finds the pool at the best level that the request allows, averages it in its own frame, looks
+/// for the reference signal there and, where it is found, finds the pool anew at it.
 /// @throws InputError as find_level().
 Measurement measure_recording(const Recording& recording, const MeasurementRequest& request);
 

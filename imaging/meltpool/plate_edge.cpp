@@ -81,7 +81,8 @@ PlateEdge find_plate_edge(const Stack& stack, double dark, double level, const B
   const double spread = 0.5 * (part(rows, 0.84) - part(rows, 0.16));
   // Columns next to each other share the blur: a column in four pixels is its own witness.
   edge.u_row = std::hypot(
-      spread / std::sqrt(std::max(1.0, static_cast<double>(rows.size()) / (2 * Stack::samples))), 0.03);
+      spread / std::sqrt(std::max(1.0, static_cast<double>(rows.size()) / (2 * Stack::samples))),
+      0.03);
   edge.present = spread < 0.35 && part(ratios, 0.5) >= 0.7;
   return edge;
 }
@@ -100,7 +101,8 @@ Stack mirrored(const Stack& stack, double dark, const PlateEdge& edge, const Blu
     const auto metal = [&](std::ptrdiff_t l) {
       if (l < first) l = static_cast<std::ptrdiff_t>(std::lround(2 * edge.row)) - l;
       l = std::clamp<std::ptrdiff_t>(l, first, static_cast<std::ptrdiff_t>(stack.lines) - 1);
-      const double seen = static_cast<double>(stack.signal[static_cast<std::size_t>(l) * stack.columns + c]) - dark;
+      const double seen =
+          static_cast<double>(stack.signal[static_cast<std::size_t>(l) * stack.columns + c]) - dark;
       const double part = cumulative((static_cast<double>(l) - edge.row) / blur.across);
       return std::log(std::max(seen / part, floor));
     };
@@ -110,14 +112,17 @@ Stack mirrored(const Stack& stack, double dark, const PlateEdge& edge, const Blu
       const double t = at - static_cast<double>(l);
       const double p0 = metal(l - 1), p1 = metal(l), p2 = metal(l + 1), p3 = metal(l + 2);
       const double value =
-          p1 + 0.5 * t * (p2 - p0 + t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)));
+          p1 +
+          0.5 * t * (p2 - p0 + t * (2 * p0 - 5 * p1 + 4 * p2 - p3 + t * (3 * (p1 - p2) + p3 - p0)));
       if (!std::isfinite(value)) continue;
       const auto signal = static_cast<float>(dark + std::exp(value));
       for (const std::ptrdiff_t row : {half + k, half - 1 - k}) {
         const auto i = static_cast<std::size_t>(row) * stack.columns + c;
         whole.signal[i] = signal;
         const auto source = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-                                l, 0, static_cast<std::ptrdiff_t>(stack.lines) - 1)) * stack.columns + c;
+                                l, 0, static_cast<std::ptrdiff_t>(stack.lines) - 1)) *
+                                stack.columns +
+                            c;
         whole.deviation[i] = stack.deviation[source];
       }
     }

@@ -21,33 +21,39 @@ double brightest(const Stack& stack, double dark) {
 /// The first rule that a fit breaks, or an empty text.
 std::string broken_rule(const TailModel& m, const ReferenceRules& rules) {
   if (m.misfit > rules.misfit)
-    return fmt::format("the tail follows no smooth course with a front (chi-squared {:.1f} a "
-                       "degree of freedom, at most {:.0f} is allowed)",
-                       m.misfit, rules.misfit);
+    return fmt::format(
+        "the tail follows no smooth course with a front (chi-squared {:.1f} a "
+        "degree of freedom, at most {:.0f} is allowed)",
+        m.misfit, rules.misfit);
   if (m.rise < rules.prominence)
-    return fmt::format("the most prominent feature of ln S has a height of {:.2f}, where a front "
-                       "has at least {:.2f}",
-                       m.rise, rules.prominence);
+    return fmt::format(
+        "the most prominent feature of ln S has a height of {:.2f}, where a front "
+        "has at least {:.2f}",
+        m.rise, rules.prominence);
   if (m.rise < rules.significance * m.u_rise)
-    return fmt::format("the most prominent feature of ln S has a height of {:.2f} with a standard "
-                       "uncertainty of {:.2f}, where {:.0f} times that are needed",
-                       m.rise, m.u_rise, rules.significance);
+    return fmt::format(
+        "the most prominent feature of ln S has a height of {:.2f} with a standard "
+        "uncertainty of {:.2f}, where {:.0f} times that are needed",
+        m.rise, m.u_rise, rules.significance);
   if (m.rise < rules.flattening * m.interval)
-    return fmt::format("within the most prominent feature the signal loses {:.0f} % of its slope, "
-                       "where a front takes at least {:.0f} %",
-                       100 * m.rise / m.interval, 100 * rules.flattening);
+    return fmt::format(
+        "within the most prominent feature the signal loses {:.0f} % of its slope, "
+        "where a front takes at least {:.0f} %",
+        100 * m.rise / m.interval, 100 * rules.flattening);
   if (m.interval >= rules.widest)
     return fmt::format("the most prominent feature is wider than an interval of {:.2f} in ln S",
                        rules.widest);
   const double enough = rules.share * static_cast<double>(m.lines);
   if (m.lines_with_front < rules.fewest_lines || static_cast<double>(m.lines_with_front) < enough)
-    return fmt::format("{} of {} lines of pixels show the most prominent feature, where at least "
-                       "{} and {:.0f} % of them must",
-                       m.lines_with_front, m.lines, rules.fewest_lines, 100 * rules.share);
+    return fmt::format(
+        "{} of {} lines of pixels show the most prominent feature, where at least "
+        "{} and {:.0f} % of them must",
+        m.lines_with_front, m.lines, rules.fewest_lines, 100 * rules.share);
   if (m.u_front > rules.u_front)
-    return fmt::format("the place of the most prominent feature is uncertain by {:.1f} px, where "
-                       "{:.2f} px are allowed",
-                       m.u_front, rules.u_front);
+    return fmt::format(
+        "the place of the most prominent feature is uncertain by {:.1f} px, where "
+        "{:.2f} px are allowed",
+        m.u_front, rules.u_front);
   return {};
 }
 

@@ -35,10 +35,10 @@ std::string signature_name(Signature signature);
 /// The reference signal, or why there is none.
 struct ReferenceSignal {
   Signature signature = Signature::none;
-  std::string reason;       ///< for none, one sentence
-  double signal = 0;        ///< S* of liquid metal at the front, the recording's unit, with dark
-  double relative_u = 0;    ///< standard uncertainty of ln(S* - dark), by bootstrap over lines
-  double solid_signal = 0;  ///< the same of solid metal, where the emissivity steps; else 0
+  std::string reason;         ///< for none, one sentence
+  double signal = 0;          ///< S* of liquid metal at the front, the recording's unit, with dark
+  double relative_u = 0;      ///< standard uncertainty of ln(S* - dark), by bootstrap over lines
+  double solid_signal = 0;    ///< the same of solid metal, where the emissivity steps; else 0
   double blurred_signal = 0;  ///< what the blurred recording shows at the front
   double front = 0;           ///< px along a line of the stack, outermost place of the front
   double u_front = 0;         ///< px
@@ -54,8 +54,8 @@ ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blu
                                       const PlateEdge& edge, const ReferenceRules& rules = {},
                                       std::uint64_t seed = 1);
 
-/// Emissivities that S* implies at a reference temperature, S* = gain t_int tau (eps L + ...) + dark
-/// inverted for eps, and whether they are those of a metal.
+/// Emissivities that S* implies at a reference temperature, S* = gain t_int tau (eps L + ...) +
+/// dark inverted for eps, and whether they are those of a metal.
 struct ImpliedEmissivity {
   double liquid = 0;
   std::optional<double> solid;

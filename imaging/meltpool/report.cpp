@@ -153,7 +153,8 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       "saturated [px],under range [px],dead [px],found [1],onset [{0}],end [{0}],length "
       "[{0}],depth [{0}],area "
       "[{0}^2],"
-      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text],speed check [px]\n",
+      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text],speed check "
+      "[px]\n",
       u);
   for (const auto& f : a.frames) {
     table += fmt::format(
@@ -205,9 +206,9 @@ std::string spoken(const Recording& recording, const Measurement& m) {
               : "Reference signal in the recording itself: none used, because " +
                     m.reference.reason + ".\nThis level is not independent of the emissivity.\n";
   if (m.emissivity && m.reference_used)
-    text += fmt::format("Implied emissivity: {:.3g} liquid{}.\n", m.emissivity->liquid,
-                        m.emissivity->solid ? fmt::format(", {:.3g} solid", *m.emissivity->solid)
-                                            : std::string());
+    text += fmt::format(
+        "Implied emissivity: {:.3g} liquid{}.\n", m.emissivity->liquid,
+        m.emissivity->solid ? fmt::format(", {:.3g} solid", *m.emissivity->solid) : std::string());
   if (m.budget) text += budget_text(*m.budget, a);
   if (a.only_incomplete)
     text +=

@@ -67,8 +67,7 @@ json budget_json(const Budget& b, const Analysis& a) {
             {"blur_and_noise_corrected", b.corrected},
             {"not_corrected_because", b.corrected ? json(nullptr) : json(b.reason)},
             {"inputs", rows}};
-  if (b.corrected)
-    j["blur_px"] = {{"along", b.blur_along}, {"across", b.blur_across}};
+  if (b.corrected) j["blur_px"] = {{"along", b.blur_along}, {"across", b.blur_across}};
   if (b.plate_edge) j["plate_border_px"] = b.plate_row;
   return j;
 }
@@ -79,7 +78,8 @@ std::string budget_text(const Budget& b, const Analysis& a) {
   std::string text;
   if (b.corrected)
     text += fmt::format(
-        "Without blur and noise: length {:.4g} {} ({:.4g} to {:.4g}, 95 %), {} {:.4g} {} ({:.4g} to "
+        "Without blur and noise: length {:.4g} {} ({:.4g} to {:.4g}, 95 %), {} {:.4g} {} ({:.4g} "
+        "to "
         "{:.4g}, 95 %).\n",
         b.length.value * s, u, b.length.low * s, b.length.high * s,
         a.along_x ? "depth" : "extent across", b.depth.value * s, u, b.depth.low * s,

@@ -21,8 +21,9 @@ namespace meltproof::imaging {
 namespace {
 
 InputTable reference_table(Settings& s) {
-  InputTable table("reference", "What must hold before a feature of the tail is taken for the "
-                                "solidification front.");
+  InputTable table("reference",
+                   "What must hold before a feature of the tail is taken for the "
+                   "solidification front.");
   table
       .quantity(s.rules.prominence,
                 {.name = "prominence",
@@ -61,8 +62,9 @@ InputTable reference_table(Settings& s) {
 }
 
 InputTable budget_table(BudgetSettings& b) {
-  InputTable table("budget", "What is known of the inputs of the uncertainty budget; standard "
-                             "uncertainties.");
+  InputTable table("budget",
+                   "What is known of the inputs of the uncertainty budget; standard "
+                   "uncertainties.");
   table
       .quantity(b.point_spread,
                 {.name = "point_spread",
@@ -274,15 +276,17 @@ Recording made_uniform(const Settings& settings, Recording recording) {
     throw InputError("uniform_cold and uniform_hot belong together: give both or neither.");
   auto header = recording.header();
   if (header.quantity != SignalQuantity::counts)
-    throw InputError(fmt::format("{}: pixels can be made uniform in counts only, but the file "
-                                 "holds {}; leave uniform_cold and uniform_hot out.",
-                                 header.path.string(), quantity_name(header.quantity)));
+    throw InputError(
+        fmt::format("{}: pixels can be made uniform in counts only, but the file "
+                    "holds {}; leave uniform_cold and uniform_hot out.",
+                    header.path.string(), quantity_name(header.quantity)));
   const Uniformity uniformity =
       two_point(mean_frame(settings.uniform_cold), mean_frame(settings.uniform_hot));
-  header.notes.push_back(fmt::format(
-      "Offsets and gains of the pixels are corrected by two references: gains differed by {:.2g} %, "
-      "{} dead pixel{}.",
-      100 * uniformity.spread, uniformity.dead, uniformity.dead == 1 ? "" : "s"));
+  header.notes.push_back(
+      fmt::format("Offsets and gains of the pixels are corrected by two references: gains differed "
+                  "by {:.2g} %, "
+                  "{} dead pixel{}.",
+                  100 * uniformity.spread, uniformity.dead, uniformity.dead == 1 ? "" : "s"));
   return {header, [source = std::move(recording), uniformity](std::size_t index, Frame& frame) {
             frame = source.frame(index);
             correct(uniformity, frame.values, source.header().saturation,
@@ -297,14 +301,16 @@ Recording apply(const Settings& settings, Recording recording) {
     recording = made_uniform(settings, std::move(recording));
   if (!settings.spectral_response.empty()) {
     if (!recording.header().radiometry)
-      throw InputError(fmt::format("{}: spectral_response was given, but the file holds no gain, "
-                                   "so a radiance has no signal; leave it out.",
-                                   recording.header().path.string()));
+      throw InputError(
+          fmt::format("{}: spectral_response was given, but the file holds no gain, "
+                      "so a radiance has no signal; leave it out.",
+                      recording.header().path.string()));
     std::vector<Spectrum> spectra = {read_spectrum(settings.spectral_response)};
     if (!settings.window_spectrum.empty()) {
       if (settings.transmission)
-        throw InputError("window_spectrum and transmission both say what the windows transmit; "
-                         "give one of them.");
+        throw InputError(
+            "window_spectrum and transmission both say what the windows transmit; "
+            "give one of them.");
       spectra.push_back(read_spectrum(settings.window_spectrum));
       recording.header().radiometry->transmission = 1;
     }

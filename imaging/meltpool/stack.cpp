@@ -73,9 +73,10 @@ StackResult stack_frames(const Recording& recording, const Analysis& analysis,
     length.push_back(analysis.along_x ? f.region.x.size() : f.region.y.size());
   }
   if (number.size() < fewest_frames)
-    return {{}, fmt::format("{} frames show the whole pool, where {} are needed to average it in "
-                            "its own frame",
-                            number.size(), fewest_frames)};
+    return {{},
+            fmt::format("{} frames show the whole pool, where {} are needed to average it in "
+                        "its own frame",
+                        number.size(), fewest_frames)};
   // Frames next to each other, from the middle on: a stack over a long recording would smear.
   if (number.size() > most_frames) {
     const auto first = static_cast<std::ptrdiff_t>((number.size() - most_frames) / 2);
@@ -84,15 +85,17 @@ StackResult stack_frames(const Recording& recording, const Analysis& analysis,
   }
   const RobustLine line = robust_line(number, onset);
   if (!(std::abs(line.slope) >= 0.05) || std::abs(line.slope) > 0.5 * median(length))
-    return {{}, fmt::format("the pool moves by {:.3g} px a frame, where between 0.05 px and half "
-                            "its length are needed to average it in its own frame",
-                            line.slope)};
+    return {{},
+            fmt::format("the pool moves by {:.3g} px a frame, where between 0.05 px and half "
+                        "its length are needed to average it in its own frame",
+                        line.slope)};
   if (line.slope < 0)
     return {{}, "the pool moves against the scan direction; give the other --scan-direction"};
   if (line.deviation > 0.5)
-    return {{}, fmt::format("the leading edge leaves its straight line by {:.2g} px, so that an "
-                            "average would smear the pool",
-                            line.deviation)};
+    return {{},
+            fmt::format("the leading edge leaves its straight line by {:.2g} px, so that an "
+                        "average would smear the pool",
+                        line.deviation)};
 
   Stack stack;
   const bool along_x = analysis.along_x;
@@ -125,9 +128,10 @@ StackResult stack_frames(const Recording& recording, const Analysis& analysis,
   }
   stack.frames = stack.used.size();
   if (stack.frames < fewest_frames)
-    return {{}, fmt::format("{} frames have their leading edge on its straight line, where {} are "
-                            "needed",
-                            stack.frames, fewest_frames)};
+    return {{},
+            fmt::format("{} frames have their leading edge on its straight line, where {} are "
+                        "needed",
+                        stack.frames, fewest_frames)};
   stack.signal.resize(values.size());
   stack.deviation.resize(values.size());
   std::vector<double> single;

@@ -51,8 +51,8 @@ struct StackedPool {
   double length = 0, depth = 0;
 };
 
-/// Measures the mean pool at a level: by its contour on the stack's own columns; where the level has
-/// a step, as frames are measured, in `samples` images of whole pixels, each at another offset,
+/// Measures the mean pool at a level: by its contour on the stack's own columns; where the level
+/// has a step, as frames are measured, in `samples` images of whole pixels, each at another offset,
 /// whose results are averaged.
 /// @param along,across px, sigma of a Gaussian with which the stack is smoothed before.
 std::optional<StackedPool> measure_stack(const Stack& stack, const Level& level, double along = 0,

@@ -99,12 +99,15 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
   model.interval = best(interval);
   model.front = along_line(*patch, *place);
   const double y = (place->row - patch->centre_line) / patch->scale;
-  model.slope = (theta_at(*patch, best, place->x, y) - theta_at(*patch, best, place->x + 0.1 / patch->scale, y)) / 0.1;
-  const int c = static_cast<int>(std::lround(place->x * patch->scale * Stack::samples + patch->centre_column -
-                                             static_cast<double>(patch->column))) +
-                patch->margin_columns;
-  const int r = static_cast<int>(std::lround((place->row - static_cast<double>(patch->line)) * fine +
-                                             0.5 * (fine - 1))) +
+  model.slope = (theta_at(*patch, best, place->x, y) -
+                 theta_at(*patch, best, place->x + 0.1 / patch->scale, y)) /
+                0.1;
+  const int c =
+      static_cast<int>(std::lround(place->x * patch->scale * Stack::samples + patch->centre_column -
+                                   static_cast<double>(patch->column))) +
+      patch->margin_columns;
+  const int r = static_cast<int>(std::lround(
+                    (place->row - static_cast<double>(patch->line)) * fine + 0.5 * (fine - 1))) +
                 patch->margin_rows;
   model.blurred = std::log(std::max(at.blurred.at<double>(r, c), 1e-12));
   model.misfit = std::max(1.0, chi / static_cast<double>(used - parameters));
@@ -133,15 +136,15 @@ std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& b
                                   const PlateEdge& edge, double log_level, bool leading,
                                   std::uint64_t seed) {
   const End end = leading ? End::leading : End::tail;
-  const auto patch = make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge,
-                                log_level, end);
+  const auto patch =
+      make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
   if (!patch) return std::nullopt;
   const Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
   const auto place = outermost(*patch, best, edge, log_level);
   if (!place) return std::nullopt;
   const Linearised at = linearise(*patch, best, true);
-  const auto used = std::count_if(patch->weight.begin(), patch->weight.end(),
-                                  [](double w) { return w > 0; });
+  const auto used =
+      std::count_if(patch->weight.begin(), patch->weight.end(), [](double w) { return w > 0; });
   std::vector<double> places;
   bootstrap(at, best, false, seed, [&](const Vector& p) {
     if (const auto drawn = outermost(*patch, p, edge, log_level))

@@ -46,7 +46,8 @@ std::vector<Passage> find_passages(std::span<const Sighting> sightings, double e
     if (describe(current, sightings)) passages.push_back(std::move(current));
     current = {};
   };
-  double furthest = 0;  // of the passage so far; spatter ahead must not set it, so it is the last two's lower
+  double furthest =
+      0;  // of the passage so far; spatter ahead must not set it, so it is the last two's lower
   double before = 0;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     const Sighting& s = sightings[i];
@@ -54,7 +55,8 @@ std::vector<Passage> find_passages(std::span<const Sighting> sightings, double e
       const bool gap = s.frame - sightings[current.members.back()].frame > longest_gap;
       if (gap || s.onset < furthest - 0.25 * extent) {
         // One frame of spatter does not end a passage: the next one must be behind as well.
-        const bool also = i + 1 < sightings.size() && sightings[i + 1].onset < furthest - 0.25 * extent;
+        const bool also =
+            i + 1 < sightings.size() && sightings[i + 1].onset < furthest - 0.25 * extent;
         if (gap || also) {
           finish();
           furthest = before = s.onset;

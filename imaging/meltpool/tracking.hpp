@@ -11,10 +11,10 @@ namespace meltproof::imaging {
 /// What is known of the largest region of one frame.
 struct Sighting {
   std::size_t frame = 0;
-  bool whole = false;   ///< it does not touch the image's border
-  double onset = 0;     ///< px along the scan, leading edge
-  double across = 0;    ///< px across the scan, centroid
-  double area = 0;      ///< px^2
+  bool whole = false;  ///< it does not touch the image's border
+  double onset = 0;    ///< px along the scan, leading edge
+  double across = 0;   ///< px across the scan, centroid
+  double area = 0;     ///< px^2
 };
 
 /// One passage of the pool through the image.

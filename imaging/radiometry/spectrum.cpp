@@ -23,23 +23,26 @@ std::string stripped(std::string text) {
 }
 
 /// What a unit in brackets makes of a number.
-double factor_of(const std::string& column, const std::vector<std::pair<std::string, double>>& units,
+double factor_of(const std::string& column,
+                 const std::vector<std::pair<std::string, double>>& units,
                  const std::string& file) {
   for (const auto& [unit, factor] : units)
     if (column.find("[" + unit + "]") != std::string::npos) return factor;
   std::string known;
   for (const auto& [unit, factor] : units) known += (known.empty() ? "[" : ", [") + unit + "]";
-  throw InputError(fmt::format("{}: the column \"{}\" names no unit that is known; expected one of {}.",
-                               file, column, known));
+  throw InputError(
+      fmt::format("{}: the column \"{}\" names no unit that is known; expected one of {}.", file,
+                  column, known));
 }
 
 double number(const std::string& text, const std::string& file, std::size_t line) {
   double value = 0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
   if (result.ec != std::errc() || result.ptr != text.data() + text.size())
-    throw InputError(fmt::format("{}, line {}: \"{}\" is no number; expected two numbers separated "
-                                 "by a comma.",
-                                 file, line, text));
+    throw InputError(
+        fmt::format("{}, line {}: \"{}\" is no number; expected two numbers separated "
+                    "by a comma.",
+                    file, line, text));
   return value;
 }
 
@@ -54,9 +57,10 @@ Spectrum::Spectrum(std::vector<double> wavelength, std::vector<double> value,
   double largest = 0;
   for (std::size_t i = 0; i < value_.size(); ++i) {
     if (!(wavelength_[i] > 0) || (i > 0 && !(wavelength_[i] > wavelength_[i - 1])))
-      throw InputError(fmt::format("{}: the wavelengths must be positive and increase; point {} is "
-                                   "at {:.6g} um.",
-                                   origin, i + 1, wavelength_[i] * 1e6));
+      throw InputError(
+          fmt::format("{}: the wavelengths must be positive and increase; point {} is "
+                      "at {:.6g} um.",
+                      origin, i + 1, wavelength_[i] * 1e6));
     if (!(value_[i] >= 0) || !std::isfinite(value_[i]))
       throw InputError(fmt::format("{}: the value at {:.6g} um is {:.6g}; expected zero or more.",
                                    origin, wavelength_[i] * 1e6, value_[i]));
@@ -69,9 +73,8 @@ Spectrum::Spectrum(std::vector<double> wavelength, std::vector<double> value,
 double Spectrum::at(double wavelength) const {
   if (wavelength < lower() || wavelength > upper()) return 0;
   const auto after = std::upper_bound(wavelength_.begin(), wavelength_.end(), wavelength);
-  const auto i = static_cast<std::size_t>(
-      std::clamp<std::ptrdiff_t>(after - wavelength_.begin(), 1,
-                                 static_cast<std::ptrdiff_t>(wavelength_.size()) - 1));
+  const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
+      after - wavelength_.begin(), 1, static_cast<std::ptrdiff_t>(wavelength_.size()) - 1));
   const double t = (wavelength - wavelength_[i - 1]) / (wavelength_[i] - wavelength_[i - 1]);
   return (1 - t) * value_[i - 1] + t * value_[i];
 }
@@ -86,10 +89,12 @@ Spectrum read_spectrum(const std::filesystem::path& path) {
     if (line.empty() || line[0] == '#') continue;
     const auto comma = line.find(',');
     if (comma == std::string::npos)
-      throw InputError(fmt::format("{}, line {}: found \"{}\"; expected two columns separated by a "
-                                   "comma.",
-                                   path.string(), n, line));
-    const std::string first = stripped(line.substr(0, comma)), second = stripped(line.substr(comma + 1));
+      throw InputError(
+          fmt::format("{}, line {}: found \"{}\"; expected two columns separated by a "
+                      "comma.",
+                      path.string(), n, line));
+    const std::string first = stripped(line.substr(0, comma)),
+                      second = stripped(line.substr(comma + 1));
     if (to_metres == 0) {
       to_metres = factor_of(first, {{"um", 1e-6}, {"nm", 1e-9}, {"m", 1}}, path.string());
       to_one = factor_of(second, {{"1", 1}, {"%", 0.01}}, path.string());
@@ -156,7 +161,8 @@ double weighted_temperature(const Spectrum& weight, double radiance) {
   return 1 / v;
 }
 
-double effective_transmission(const Spectrum& response, const Spectrum& window, double temperature) {
+double effective_transmission(const Spectrum& response, const Spectrum& window,
+                              double temperature) {
   return weighted_radiance(product({response, window}), temperature) /
          weighted_radiance(response, temperature);
 }

@@ -29,15 +29,15 @@ TEST(Spectrum, NarrowIsPlancksLaw) {
   const double width = 1e-9, lambda = 4e-6, t = 1683;
   const Spectrum line({lambda - width, lambda, lambda + width}, {0, 1, 0}, "line");
   const double h = 6.62607015e-34, c = 299792458, k = 1.380649e-23;
-  const double planck =
-      2 * h * c * c / std::pow(lambda, 5) / std::expm1(h * c / (lambda * k * t));
+  const double planck = 2 * h * c * c / std::pow(lambda, 5) / std::expm1(h * c / (lambda * k * t));
   EXPECT_NEAR(weighted_radiance(line, t) / (planck * width), 1, 1e-6);
 }
 
 TEST(Spectrum, InvertsToAMicrokelvin) {
   const Spectrum rising({3e-6, 4e-6, 5e-6}, {0.2, 0.9, 0.4}, "rising");
   for (double t = 300; t < 5000; t *= 1.3)
-    EXPECT_NEAR(weighted_temperature(rising, weighted_radiance(rising, t)), t, 1e-6 * (1 + t / 1000));
+    EXPECT_NEAR(weighted_temperature(rising, weighted_radiance(rising, t)), t,
+                1e-6 * (1 + t / 1000));
   EXPECT_TRUE(std::isnan(weighted_temperature(rising, -1)));
 }
 

@@ -13,9 +13,10 @@ namespace meltproof::imaging {
 
 Uniformity two_point(const std::vector<double>& cold, const std::vector<double>& hot) {
   if (cold.size() != hot.size() || cold.empty())
-    throw InputError(fmt::format("The cold reference has {} pixels and the hot one {}; expected as "
-                                 "many, from the same window of the camera.",
-                                 cold.size(), hot.size()));
+    throw InputError(
+        fmt::format("The cold reference has {} pixels and the hot one {}; expected as "
+                    "many, from the same window of the camera.",
+                    cold.size(), hot.size()));
   std::vector<double> response(cold.size());
   for (std::size_t i = 0; i < cold.size(); ++i) response[i] = hot[i] - cold[i];
   std::vector<double> sorted;
@@ -26,9 +27,10 @@ Uniformity two_point(const std::vector<double>& cold, const std::vector<double>&
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle;
   if (!(median > 0))
-    throw InputError(fmt::format("The hot reference is not brighter than the cold one (median "
-                                 "difference {:.4g} counts); exchange them or record them anew.",
-                                 median));
+    throw InputError(
+        fmt::format("The hot reference is not brighter than the cold one (median "
+                    "difference {:.4g} counts); exchange them or record them anew.",
+                    median));
   Uniformity u;
   u.offset = cold;
   u.gain.assign(cold.size(), 0);
@@ -54,9 +56,10 @@ Uniformity two_point(const std::vector<double>& cold, const std::vector<double>&
 void correct(const Uniformity& u, std::vector<float>& values, double saturation,
              double under_range) {
   if (values.size() != u.gain.size())
-    throw InputError(fmt::format("The references for the pixels' gains have {} pixels, the "
-                                 "recording {}; record them in the same window of the camera.",
-                                 u.gain.size(), values.size()));
+    throw InputError(
+        fmt::format("The references for the pixels' gains have {} pixels, the "
+                    "recording {}; record them in the same window of the camera.",
+                    u.gain.size(), values.size()));
   const auto high = static_cast<float>(saturation), low = static_cast<float>(under_range);
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float raw = values[i];
