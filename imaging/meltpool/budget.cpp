@@ -10,15 +10,13 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
+#include "imaging/meltpool/uneven_pixels.hpp"
+
 namespace meltproof::imaging {
 namespace {
 
 using Random = std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)>;
 
-/// A draw's effect on length and depth, in the analysis' unit.
-struct Effect {
-  double length = 0, depth = 0;
-};
 struct Input {
   Contribution row;
   std::function<Effect(gsl_rng*)> draw;
@@ -44,64 +42,6 @@ double draw_mean(gsl_rng* random, const Series& s) {
   if (s.n < 2) return 0;
   return s.uncertainty_of_mean() * gsl_ran_tdist(random, std::max(2.0, s.effective - 1));
 }
-
-/// Lengths of some frames with pixels of uneven gain.
-class UnevenPixels {
- public:
-  UnevenPixels(const Recording& recording, const Analysis& analysis, const PixelSize& pixel,
-               double sigma)
-      : analysis_(analysis), sigma_(sigma), dark_(analysis.level.interpolation.dark) {
-    std::vector<std::size_t> numbers;
-    for (const auto& f : analysis.frames)
-      if (f.complete) numbers.push_back(f.index);
-    constexpr std::size_t most = 48;  // frames, evenly chosen: their mean is what counts
-    const std::size_t step = std::max<std::size_t>(1, (numbers.size() + most - 1) / most);
-    for (std::size_t i = 0; i < numbers.size(); i += step)
-      frames_.push_back(recording.frame(numbers[i]));
-    along_ = pixel.known() ? (analysis.along_x ? pixel.x : pixel.y) : 1;
-    across_ = pixel.known() ? (analysis.along_x ? pixel.y : pixel.x) : 1;
-    width_ = recording.header().width;
-    height_ = recording.header().height;
-    gain_.assign(width_ * height_, 1);
-    even_ = measure();
-  }
-  Effect operator()(gsl_rng* random) {
-    for (auto& g : gain_) g = static_cast<float>(1 + sigma_ * gsl_ran_gaussian_ziggurat(random, 1));
-    const Effect uneven = measure();
-    return {uneven.length - even_.length, uneven.depth - even_.depth};
-  }
-
- private:
-  Effect measure() {
-    RegionFinder finder(width_, height_, analysis_.level.interpolation);
-    Effect sum;
-    double n = 0;
-    const auto dark = static_cast<float>(dark_);
-    for (const Frame& f : frames_) {
-      values_.resize(f.values.size());
-      for (std::size_t i = 0; i < values_.size(); ++i)
-        values_[i] = dark + gain_[i] * (f.values[i] - dark);
-      if (analysis_.level.step) {
-        mark_fronts(values_, width_, height_, analysis_.along_x, *analysis_.level.step, marked_);
-        values_.swap(marked_);
-      }
-      const auto region = finder.largest(values_, *analysis_.level.value);
-      if (!region) continue;
-      sum.length += along_ * (analysis_.along_x ? region->x : region->y).size();
-      sum.depth += across_ * (analysis_.along_x ? region->y : region->x).size();
-      n += 1;
-    }
-    if (n > 0) sum.length /= n, sum.depth /= n;
-    return sum;
-  }
-
-  const Analysis& analysis_;
-  double sigma_, dark_, along_ = 1, across_ = 1;
-  std::size_t width_ = 0, height_ = 0;
-  std::vector<Frame> frames_;
-  std::vector<float> gain_, values_, marked_;
-  Effect even_;
-};
 
 /// Mean over a part of the frames: the choice of what counts as steady.
 Effect windowed(const Analysis& a, double from, double to) {
