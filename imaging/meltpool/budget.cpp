@@ -156,7 +156,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
     const auto [u_log, how] = level_uncertainty(h, a, s);
     if (pool->front_found)
       add("reference signal S*", "A",
-          "place of the front by bootstrap over lines; independent of emissivity and transmission",
+          "place of the front by bootstrap over lines and for another point spread; independent of "
+          "emissivity and transmission",
           [&](gsl_rng* r) {
             return Effect{along * normal(r, pool->u_end),
                           across * pool->depth_by_log_level * normal(r, found->relative_u)};

@@ -100,7 +100,8 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
     const PlateEdge edge = refined_plate_edge(*stack.stack, dark, at, blur,
                                               find_plate_edge(*stack.stack, dark, at, blur));
     m.reference =
-        find_reference_signal(*stack.stack, dark, blur, edge, request.rules, request.budget.seed);
+        find_reference_signal(*stack.stack, dark, blur, edge, request.budget.u_point_spread,
+                              request.rules, request.budget.seed);
     const double temperature =
         request.level.reference_temperature.value_or(default_reference_temperature);
     if (m.reference.signature != Signature::none && h.radiometry) {

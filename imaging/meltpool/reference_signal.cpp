@@ -72,8 +72,8 @@ std::string signature_name(Signature signature) {
 }
 
 ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blur& blur,
-                                      const PlateEdge& edge, const ReferenceRules& rules,
-                                      std::uint64_t seed) {
+                                      const PlateEdge& edge, double u_point_spread,
+                                      const ReferenceRules& rules, std::uint64_t seed) {
   ReferenceSignal result;
   const double top = brightest(stack, dark);
   // A few steps from many signals, then as many as it takes from the most promising ones.
@@ -100,8 +100,24 @@ ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blu
     return result;
   }
   try_from(best->blurred);  // around the front itself
-  result.model = *best;
   const std::string broken = broken_rule(*best, rules);
+  if (u_point_spread > 0 && broken.empty()) {
+    // A wider blur than is known of makes a step look like a ramp that begins earlier.
+    const auto other = [&](double d) {
+      const Blur b{std::max(blur.along + d, 0.05), std::max(blur.across + d, 0.05)};
+      return fit_tail(stack, dark, b, edge, best->blurred, seed);
+    };
+    const auto wider = other(u_point_spread), narrower = other(-u_point_spread);
+    double front = 0, log_signal = 0;  // the larger of the two changes
+    for (const auto& m : {wider, narrower}) {
+      if (!m) continue;
+      front = std::max(front, std::abs(m->front - best->front));
+      log_signal = std::max(log_signal, std::abs(m->log_signal - best->log_signal));
+    }
+    best->u_front = std::hypot(best->u_front, front);
+    best->u_log_signal = std::hypot(best->u_log_signal, log_signal);
+  }
+  result.model = *best;
   if (!broken.empty()) {
     result.reason = "nothing marks the solidification front: " + broken;
     return result;

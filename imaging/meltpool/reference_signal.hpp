@@ -49,10 +49,12 @@ struct ReferenceSignal {
 /// 0.06 of the brightest one, keeps the fit that explains most, fits again around its front, and
 /// applies the rules. The feature counts as a step of the emissivity where the signal rises within
 /// it, otherwise as latent heat.
+/// The uncertainties of S* and of the front hold the bootstrap over lines and what the fit makes of
+/// a blur that is wider or narrower by `u_point_spread` (px).
 /// @param dark signal without light; @param seed of the bootstrap over lines.
 ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blur& blur,
-                                      const PlateEdge& edge, const ReferenceRules& rules = {},
-                                      std::uint64_t seed = 1);
+                                      const PlateEdge& edge, double u_point_spread = 0,
+                                      const ReferenceRules& rules = {}, std::uint64_t seed = 1);
 
 /// Emissivities that S* implies at a reference temperature, S* = gain t_int tau (eps L + ...) +
 /// dark inverted for eps, and whether they are those of a metal.
