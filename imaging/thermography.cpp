@@ -35,6 +35,8 @@ const std::vector<std::pair<std::string, std::string>> shared_options = {
     {"frame-rate", "frames per second, as \"9762.5 Hz\", for files that hold none"},
     {"kelvin-per-count", "as \"0.04 K\", for exports with a linear temperature scale"},
     {"scan-speed", "speed of the beam, as \"0.375 m/s\", to check the measured one"},
+    {"reference-signal", "look for the phase boundary in the recording: auto, find or off"},
+    {"dark", "counts without light, for files that do not hold it"},
     {"scan-direction", "where the beam goes in the image: +x, -x, +y, -y"}};
 
 /// The settings file, where there is one, with what was typed in front of it.
@@ -101,17 +103,17 @@ int main(int argc, char** argv) {
     PixelSize pixel{header.pixel_size, header.pixel_size, 0, 0};
     if (!settings.calibration.empty()) pixel = read_pixel_size(settings.calibration);
 
-    const Analysis analysis = analyse(recording, settings.request(),
-                                      parse_scan_direction(settings.scan_direction), pixel);
+    const Measurement measurement = measure_recording(recording, settings.measurement(pixel));
+    const Analysis& analysis = measurement.analysis;
     std::map<std::string, std::string> files = {
         {"frames.csv", frames_table(recording, analysis)},
         {"annotated.png", annotated_picture(recording, analysis, pixel)},
         {"contact_sheet.png", contact_sheet(recording, analysis)}};
     provenance.wall_time = provenance.elapsed();
     files["summary.json"] =
-        summary(recording, analysis, pixel, settings, provenance).dump(2) + "\n";
+        summary(recording, measurement, pixel, settings, provenance).dump(2) + "\n";
     write_all(output, files);
-    if (!program.quiet()) fmt::print("{}Written to {}.\n", spoken(recording, analysis), output);
+    if (!program.quiet()) fmt::print("{}Written to {}.\n", spoken(recording, measurement), output);
     if (header.frames_lost > 0) return ExitStatus::truncated;
     return analysis.found ? ExitStatus::success : ExitStatus::no_result;
   });

@@ -61,7 +61,8 @@ Camera::Camera(const CameraSettings& settings)
       radiometry_(camera_radiometry(settings)),
       band_(settings.band_lower, settings.band_upper) {}
 
-cv::Mat Camera::expose(const Scene& scene, const SceneGrid& grid, double motion) const {
+/// Radiance after motion and point spread, on the fine grid.
+cv::Mat Camera::optical_radiance(const Scene& scene, const SceneGrid& grid, double motion) const {
   const double surroundings = band_.radiance(settings_.ambient_temperature);
   cv::Mat radiance(scene.temperature.size(), CV_64F);
   for (int row = 0; row < radiance.rows; ++row)
@@ -87,14 +88,30 @@ cv::Mat Camera::expose(const Scene& scene, const SceneGrid& grid, double motion)
     cv::GaussianBlur(radiance, radiance, {},
                      settings_.point_spread * static_cast<double>(settings_.supersampling), 0,
                      cv::BORDER_REPLICATE);
-  cv::Mat pixels;
-  cv::resize(radiance(grid.image()), pixels,
-             {static_cast<int>(settings_.width), static_cast<int>(settings_.height)}, 0, 0,
-             cv::INTER_AREA);
+  return radiance;
+}
+
+cv::Mat Camera::to_counts(const cv::Mat& radiance) const {
   const Radiometry& r = radiometry_;
   const double window =
       r.window_emission ? (1 - r.transmission) * band_.radiance(r.window_temperature) : 0.0;
-  return r.gain * r.integration_time * (r.transmission * pixels + window) + r.dark;
+  return r.gain * r.integration_time * (r.transmission * radiance + window) + r.dark;
+}
+
+cv::Mat Camera::expose(const Scene& scene, const SceneGrid& grid, double motion) const {
+  cv::Mat pixels;
+  cv::resize(optical_radiance(scene, grid, motion)(grid.image()), pixels,
+             {static_cast<int>(settings_.width), static_cast<int>(settings_.height)}, 0, 0,
+             cv::INTER_AREA);
+  return to_counts(pixels);
+}
+
+cv::Mat Camera::expose_finely(const Scene& scene, const SceneGrid& grid, double motion) const {
+  const int samples = static_cast<int>(settings_.supersampling);
+  cv::Mat mean;
+  cv::blur(optical_radiance(scene, grid, motion), mean, {samples, samples},
+           {samples / 2, samples / 2}, cv::BORDER_REPLICATE);
+  return to_counts(mean);
 }
 
 std::vector<std::uint16_t> Camera::detect(const cv::Mat& signal, Noise& noise) const {

@@ -74,11 +74,18 @@ class Camera {
   /// optics, averaged over each pixel, through windows and gain. May exceed full scale.
   cv::Mat expose(const Scene& scene, const SceneGrid& grid, double motion) const;
 
+  /// The same on every point of the fine grid, as if a pixel were centred half a step before it
+  /// (towards the first row and column): the mean over a pixel's area, CV_64F, counts.
+  cv::Mat expose_finely(const Scene& scene, const SceneGrid& grid, double motion) const;
+
   /// What the sensor makes of it: shot noise of the electrons (Gaussian, of variance equal to their
   /// number) and read noise, rounded to whole counts, cut off at 0 and at full scale.
   std::vector<std::uint16_t> detect(const cv::Mat& signal, Noise& noise) const;
 
  private:
+  cv::Mat optical_radiance(const Scene& scene, const SceneGrid& grid, double motion) const;
+  cv::Mat to_counts(const cv::Mat& radiance) const;
+
   CameraSettings settings_;
   Radiometry radiometry_;
   BandTable band_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -16,36 +17,65 @@ bool is_forward(ScanDirection direction) {
   return direction == ScanDirection::right || direction == ScanDirection::down;
 }
 
-template <class Valid>
-Range range_of(const std::vector<float>& values, Valid valid) {
-  Range r{1e300, -1e300, 0};
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!valid(i)) continue;
-    const auto v = static_cast<double>(values[i]);
-    r.low = std::min(r.low, v);
-    r.high = std::max(r.high, v);
-    r.mean += v;
-    ++n;
-  }
+/// Lowest, highest and mean of the values that count. Sums run in eight lanes, whatever the
+/// machine, so that they can be done at once and come out the same everywhere.
+Range range_of(const std::vector<float>& values) {
+  constexpr std::size_t lanes = 8;
+  const std::size_t n = values.size();
   if (n == 0) return {NAN, NAN, NAN};
+  float low[lanes], high[lanes];
+  double sum[lanes];
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    low[lane] = high[lane] = values[0];
+    sum[lane] = 0;
+  }
+  const float* p = values.data();
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes, p += lanes) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) low[lane] = std::min(low[lane], p[lane]);
+    for (std::size_t lane = 0; lane < lanes; ++lane) high[lane] = std::max(high[lane], p[lane]);
+    for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += static_cast<double>(p[lane]);
+  }
+  for (std::size_t lane = 0; i < n; ++i, ++lane) {
+    low[lane] = std::min(low[lane], values[i]);
+    high[lane] = std::max(high[lane], values[i]);
+    sum[lane] += static_cast<double>(values[i]);
+  }
+  Range r{static_cast<double>(*std::min_element(low, low + lanes)),
+          static_cast<double>(*std::max_element(high, high + lanes)), 0};
+  for (const double lane : sum) r.mean += lane;
   r.mean /= static_cast<double>(n);
   return r;
+}
+
+/// Pixels with a status; a loop over bytes that sums bytes, at most 255 at a time, is done at once.
+std::size_t count_of(const std::vector<PixelStatus>& status, PixelStatus wanted) {
+  std::size_t total = 0;
+  for (std::size_t i = 0; i < status.size();) {
+    const std::size_t end = std::min(status.size(), i + 240);
+    std::uint8_t part = 0;
+    for (; i < end; ++i) part = static_cast<std::uint8_t>(part + (status[i] == wanted ? 1 : 0));
+    total += part;
+  }
+  return total;
 }
 
 FrameResult describe(const Frame& frame) {
   FrameResult result;
   result.index = frame.index;
   result.time = frame.time;
-  result.values =
-      range_of(frame.values, [&](std::size_t i) { return frame.status[i] != PixelStatus::dead; });
-  if (!frame.counts.empty())
-    result.counts = range_of(frame.counts, [](std::size_t) { return true; });
-  for (const auto status : frame.status) {
-    result.saturated += status == PixelStatus::saturated ? 1 : 0;
-    result.under_range += status == PixelStatus::under_range ? 1 : 0;
-    result.dead += status == PixelStatus::dead ? 1 : 0;
+  result.saturated = count_of(frame.status, PixelStatus::saturated);
+  result.under_range = count_of(frame.status, PixelStatus::under_range);
+  result.dead = count_of(frame.status, PixelStatus::dead);
+  if (result.dead == 0) {
+    result.values = range_of(frame.values);
+  } else {
+    std::vector<float> alive;
+    for (std::size_t i = 0; i < frame.values.size(); ++i)
+      if (frame.status[i] != PixelStatus::dead) alive.push_back(frame.values[i]);
+    result.values = range_of(alive);
   }
+  if (!frame.counts.empty()) result.counts = range_of(frame.counts);
   return result;
 }
 
@@ -84,6 +114,12 @@ struct Search {
     front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
     return finder.largest(marked, *level.value);
   }
+  /// The largest region near a place: where the largest of all does not move with the beam.
+  std::optional<Region> pool_near(const Frame& frame, Point place, double distance) {
+    if (!level.step) return finder.largest_near(frame.values, *level.value, place, distance);
+    front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
+    return finder.largest_near(marked, *level.value, place, distance);
+  }
   const Level& level;
   bool along_x;
   std::size_t width, height;
@@ -91,6 +127,63 @@ struct Search {
   std::vector<float> marked;
   std::size_t front_lines = 0;
 };
+
+/// A frame's region as tracking sees it, with the scan towards higher numbers.
+Sighting sighting_of(const FrameResult& f, ScanDirection direction) {
+  const bool along_x = direction == ScanDirection::right || direction == ScanDirection::left;
+  const Extent& along = along_x ? f.region.x : f.region.y;
+  return {f.index, !f.region.at_border(), is_forward(direction) ? along.high : -along.low,
+          along_x ? f.region.centroid.y : f.region.centroid.x, f.region.area};
+}
+
+/// Drops what does not move with the beam. In a frame whose largest region is elsewhere, the pool
+/// is looked for where it should be.
+void follow_pool(Analysis& analysis, const Recording& recording, ScanDirection direction,
+                 const PixelSize& pixel, Search& search) {
+  std::vector<Sighting> sightings;
+  std::vector<std::size_t> frame_of;
+  for (std::size_t i = 0; i < analysis.frames.size(); ++i) {
+    if (!analysis.frames[i].found) continue;
+    sightings.push_back(sighting_of(analysis.frames[i], direction));
+    frame_of.push_back(i);
+  }
+  const auto& h = recording.header();
+  const auto extent = static_cast<double>(analysis.along_x ? h.width : h.height);
+  const auto passages = find_passages(sightings, extent);
+  analysis.passages = passages.size();
+  Frame frame;
+  for (const Passage& passage : passages)
+    for (const std::size_t member : passage.members) {
+      FrameResult& result = analysis.frames[frame_of[member]];
+      Sighting seen = sightings[member];
+      result.disturbance = disturbance_of(seen, passage);
+      if (result.disturbance == Disturbance::displaced) {
+        recording.read(result.index, frame);
+        // The pool's middle lies behind its leading edge by some part of its length.
+        const double along =
+            passage.expected_onset(result.index) - 0.5 * std::sqrt(std::max(passage.area, 1.0));
+        const double signed_along = is_forward(direction) ? along : -along;
+        const Point place = analysis.along_x ? Point{signed_along, passage.across}
+                                             : Point{passage.across, signed_along};
+        auto region = search.pool_near(frame, place, std::sqrt(passage.area) + passage.tolerance);
+        if (region && region->pixels >= smallest_pool) {
+          FrameResult other = result;
+          measure(other, std::move(*region), direction, pixel);
+          other.front_lines = search.front_lines;
+          other.complete = other.complete && !(analysis.level.step && other.front_lines == 0);
+          const Sighting there = sighting_of(other, direction);
+          if (disturbance_of(there, passage) == Disturbance::none) {
+            result = std::move(other);
+            result.disturbance = Disturbance::none;
+            seen = there;
+            ++analysis.replaced;
+          }
+        }
+      }
+      if (seen.whole) result.speed_check = seen.onset - passage.expected_onset(result.index);
+      result.complete = result.complete && result.disturbance == Disturbance::none;
+    }
+}
 
 void summarise_frames(Analysis& analysis, ScanDirection direction) {
   const auto complete = std::count_if(analysis.frames.begin(), analysis.frames.end(),
@@ -145,9 +238,14 @@ std::optional<Region> pool_in(const Recording& recording, const Analysis& analys
 
 Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDirection direction,
                  const PixelSize& pixel) {
+  return analyse_at(recording, find_level(recording, request), direction, pixel);
+}
+
+Analysis analyse_at(const Recording& recording, const Level& level, ScanDirection direction,
+                    const PixelSize& pixel) {
   const auto& header = recording.header();
   Analysis analysis;
-  analysis.level = find_level(recording, request);
+  analysis.level = level;
   analysis.unit = pixel.known() ? std::string("m") : std::string("px");
   analysis.along_x = direction == ScanDirection::right || direction == ScanDirection::left;
   Search search(header, analysis.level, analysis.along_x);
@@ -184,6 +282,7 @@ Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDi
     else
       analysis.reason = below_level_reason(header, analysis.level, top.values.high, top.index);
   }
+  if (analysis.found) follow_pool(analysis, recording, direction, pixel, search);
   summarise_frames(analysis, direction);
   return analysis;
 }

@@ -9,6 +9,7 @@
 #include "imaging/meltpool/contour.hpp"
 #include "imaging/meltpool/level.hpp"
 #include "imaging/meltpool/statistics.hpp"
+#include "imaging/meltpool/tracking.hpp"
 #include "imaging/recording/recording.hpp"
 
 namespace meltproof::imaging {
@@ -41,11 +42,13 @@ struct FrameResult {
                           ///< level has a step
   double onset = 0,
          end = 0;  ///< leading edge and tail along the scan axis, from the left or upper border
-  double length = 0, depth = 0;  ///< along and across the scan axis
-  double area = 0;               ///< unit squared
-  double orientation = 0;        ///< rad, long axis from x towards y (downwards)
-  std::size_t front_lines = 0;   ///< lines of pixels in which the front itself was seen
-  Region region;                 ///< px, without its edge
+  double length = 0, depth = 0;                 ///< along and across the scan axis
+  double area = 0;                              ///< unit squared
+  double orientation = 0;                       ///< rad, long axis from x towards y (downwards)
+  Disturbance disturbance = Disturbance::none;  ///< what sets the region apart from the moving pool
+  std::optional<double> speed_check;  ///< px, leading edge minus its passage's straight line
+  std::size_t front_lines = 0;        ///< lines of pixels in which the front itself was seen
+  Region region;                      ///< px, without its edge
 };
 
 /// The result of a recording.
@@ -60,13 +63,19 @@ struct Analysis {
   bool only_incomplete = false;
   Series length, depth, area;
   std::optional<double>
-      speed;              ///< m/s or px/s of the leading edge in the scan direction, least squares
-  std::size_t shown = 0;  ///< the frame that tells most
+      speed;  ///< m/s or px/s of the leading edge in the scan direction, least squares
+  std::size_t passages = 0;  ///< of a pool through the image
+  std::size_t replaced = 0;  ///< frames in which another region than the largest is the pool
+  std::size_t shown = 0;     ///< the frame that tells most
 };
 
 /// Finds the level, then the pool in each frame.
 Analysis analyse(const Recording& recording, const LevelRequest& request, ScanDirection direction,
                  const PixelSize& pixel);
+
+/// The pool in each frame at a level that is known.
+Analysis analyse_at(const Recording& recording, const Level& level, ScanDirection direction,
+                    const PixelSize& pixel);
 
 /// The pool of one frame with its edge, for drawing; nothing if the frame has none.
 std::optional<Region> pool_in(const Recording& recording, const Analysis& analysis,

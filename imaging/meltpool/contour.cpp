@@ -106,7 +106,7 @@ double RegionFinder::crossing(float inside, float outside, double level) const {
     const double floor = 1e-3 * l;
     a = std::log(a - interpolation_.dark);
     b = std::log(std::max(b - interpolation_.dark, floor));
-    l = std::log(l);
+    l = log_level_;
   }
   if (!std::isfinite(b)) return 0.5;
   return a > b ? std::clamp((a - l) / (a - b), 0.0, 1.0) : 0.0;
@@ -186,14 +186,15 @@ Region RegionFinder::outline(std::int32_t label, float level) {
   Extent x_points{infinity, -infinity}, y_points{infinity, -infinity};
 
   constexpr std::array<std::pair<int, int>, 4> corner = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-  for (std::ptrdiff_t y = y0 - 1; y <= y1; ++y)
+  for (std::ptrdiff_t y = y0 - 1; y <= y1; ++y) {
+    // Corner 1 and 2 of a square are corner 0 and 3 of the next one.
+    bool upper = inside(x0 - 1, y), lower = inside(x0 - 1, y + 1);
     for (std::ptrdiff_t x = x0 - 1; x <= x1; ++x) {
-      std::array<bool, 4> in{};
-      int count = 0;
-      for (std::size_t k = 0; k < 4; ++k) {
-        in[k] = inside(x + corner[k].first, y + corner[k].second);
-        count += in[k] ? 1 : 0;
-      }
+      const bool upper_right = inside(x + 1, y), lower_right = inside(x + 1, y + 1);
+      const std::array<bool, 4> in = {upper, upper_right, lower_right, lower};
+      upper = upper_right;
+      lower = lower_right;
+      const int count = in[0] + in[1] + in[2] + in[3];
       if (count == 0 || count == 4) continue;
       // Walking round the square, `leaves` are where the walk leaves the region, `enters` where it
       // comes back; the region's edge goes from a leaving point to the next entering one.
@@ -237,6 +238,7 @@ Region RegionFinder::outline(std::int32_t label, float level) {
         connect(leaves[1], enters[1 - partner]);
       }
     }
+  }
   region.x = {-left.position(-x_points.low), right.position(x_points.high)};
   region.y = {-up.position(-y_points.low), down.position(y_points.high)};
   region.area = moments.a;
@@ -251,7 +253,18 @@ Region RegionFinder::outline(std::int32_t label, float level) {
 }
 
 std::optional<Region> RegionFinder::largest(std::span<const float> values, double level) {
+  return find(values, level, nullptr, 0);
+}
+
+std::optional<Region> RegionFinder::largest_near(std::span<const float> values, double level,
+                                                 Point place, double distance) {
+  return find(values, level, &place, distance);
+}
+
+std::optional<Region> RegionFinder::find(std::span<const float> values, double level,
+                                         const Point* place, double distance) {
   const auto threshold = static_cast<float>(level);
+  log_level_ = std::log(static_cast<double>(threshold) - interpolation_.dark);
   mend(values, threshold);
   std::fill(labels_.begin(), labels_.end(), 0);
   largest_.clear();
@@ -264,7 +277,16 @@ std::optional<Region> RegionFinder::largest(std::span<const float> values, doubl
     for (std::size_t i = row; i < row + width; ++i) {
       if (!(values_[i] >= threshold) || labels_[i] != 0) continue;
       flood(i, ++label, threshold);
-      if (pixels_.size() > largest_.size()) {
+      const auto near = [&] {
+        double sx = 0, sy = 0;
+        for (const std::size_t k : pixels_) {
+          sx += static_cast<double>(k % width);
+          sy += static_cast<double>(k / width);
+        }
+        const auto n = static_cast<double>(pixels_.size());
+        return std::hypot(sx / n - place->x, sy / n - place->y) <= distance;
+      };
+      if (pixels_.size() > largest_.size() && (place == nullptr || near())) {
         largest_ = pixels_;
         best = label;
       }

@@ -66,17 +66,23 @@ class RegionFinder {
   /// @param values width * height, row-major; a value that is no number counts as below the level,
   ///        unless at least three of its four neighbours are above, whose mean it then takes.
   std::optional<Region> largest(std::span<const float> values, double level);
+  /// The same among regions whose pixels have their mean place within `distance` px of `place`.
+  std::optional<Region> largest_near(std::span<const float> values, double level, Point place,
+                                     double distance);
 
  private:
   void mend(std::span<const float> values, float level);
   bool joined(std::size_t x, std::size_t y, float level) const;
   void flood(std::size_t seed, std::int32_t label, float level);
   double crossing(float inside, float outside, double level) const;
+  std::optional<Region> find(std::span<const float> values, double level, const Point* place,
+                             double distance);
   Region outline(std::int32_t label, float level);
 
   std::ptrdiff_t width_, height_;
   Interpolation interpolation_;
   std::span<const float> values_;
+  double log_level_ = 0;
   std::vector<float> mended_;
   std::vector<std::int32_t> labels_;
   std::vector<std::size_t> pixels_, stack_, largest_;

@@ -165,6 +165,8 @@ std::string level_kind_name(LevelKind kind) {
       return "given";
     case LevelKind::temperature:
       return "reference temperature";
+    case LevelKind::recording:
+      return "reference signal of the recording";
     case LevelKind::radiometry:
       return "reference temperature by radiometry";
     case LevelKind::contrast:

@@ -28,6 +28,7 @@ inline constexpr double default_reference_temperature = 1683;
 enum class LevelKind {
   given,        ///< the user's number
   temperature,  ///< the reference temperature, in a recording of temperatures
+  recording,    ///< found in the recording itself: no emissivity, no transmission
   radiometry,   ///< the reference temperature through Planck's law over the camera's band
   contrast      ///< the threshold between a bright region and its background: no phase boundary
 };

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/meltpool/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "base/units.hpp"
+#include "imaging/meltpool/report_budget.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -45,6 +47,8 @@ json length_budget(const Series& s, const Analysis& a, double pixel, double u_pi
 
 std::string status_of(const FrameResult& f) {
   if (!f.found) return "no pool";
+  if (f.disturbance == Disturbance::displaced) return "not with the beam";
+  if (f.disturbance == Disturbance::enlarged) return "disturbed";
   if (f.region.at_border()) return "at the border";
   return f.complete ? "complete" : "front not seen";
 }
@@ -55,9 +59,10 @@ std::string number(double value) {
 
 }  // namespace
 
-json summary(const Recording& recording, const Analysis& a, const PixelSize& pixel,
+json summary(const Recording& recording, const Measurement& m, const PixelSize& pixel,
              const Settings& settings, const Provenance& provenance) {
   const auto& h = recording.header();
+  const Analysis& a = m.analysis;
   json j = {{"recording", h.path.filename().string()},
             {"format", h.format},
             {"sha256", h.sha256},
@@ -91,10 +96,15 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
                           {"y", pixel.y * 1e6},
                           {"u_x", pixel.u_x * 1e6},
                           {"u_y", pixel.u_y * 1e6}};
+  j["reference_signal"] = reference_json(m, h);
   if (!a.found) {
     j["provenance"] = provenance.json();
     return j;
   }
+  const auto disturbed = [&](Disturbance d) {
+    return std::count_if(a.frames.begin(), a.frames.end(),
+                         [d](const FrameResult& f) { return f.disturbance == d; });
+  };
   const std::string unit = unit_of(a);
   const double along = a.along_x ? pixel.x : pixel.y, across = a.along_x ? pixel.y : pixel.x;
   const double u_along = a.along_x ? pixel.u_x : pixel.u_y,
@@ -104,6 +114,10 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
   j["area_" + unit + "2"] = {{"mean", a.area.mean * scale_of(a) * scale_of(a)},
                              {"sd", a.area.deviation * scale_of(a) * scale_of(a)},
                              {"n", a.area.n}};
+  j["tracking"] = {{"passages", a.passages},
+                   {"frames_not_with_the_beam", disturbed(Disturbance::displaced)},
+                   {"frames_disturbed", disturbed(Disturbance::enlarged)},
+                   {"frames_with_another_region", a.replaced}};
   j["frames_used"] = a.only_incomplete
                          ? "all with a pool: in none is it whole (see status in frames.csv), "
                            "so lengths are lower bounds"
@@ -122,6 +136,7 @@ json summary(const Recording& recording, const Analysis& a, const PixelSize& pix
     if (settings.scan_speed && a.unit == "m")
       j["speed_relative_error"] = *a.speed / *settings.scan_speed - 1;
   }
+  if (m.budget) j["budget"] = budget_json(*m.budget, a);
   j["shown_frame"] = a.shown;
   j["provenance"] = provenance.json();
   return j;
@@ -138,7 +153,8 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       "saturated [px],under range [px],dead [px],found [1],onset [{0}],end [{0}],length "
       "[{0}],depth [{0}],area "
       "[{0}^2],"
-      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text]\n",
+      "centroid x [px],centroid y [px],orientation [deg],pixels [px],status [text],speed check "
+      "[px]\n",
       u);
   for (const auto& f : a.frames) {
     table += fmt::format(
@@ -149,17 +165,19 @@ std::string frames_table(const Recording& recording, const Analysis& a) {
       table += fmt::format("{},{},{:.10g},", f.counts->low, f.counts->high, f.counts->mean);
     table += fmt::format("{},{},{},{},", f.saturated, f.under_range, f.dead, f.found ? 1 : 0);
     if (f.found)
-      table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{}\n",
+      table += fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.5f},{:.5f},{:.3f},{},{},{}\n",
                            f.onset * s, f.end * s, f.length * s, f.depth * s, f.area * s * s,
                            f.region.centroid.x, f.region.centroid.y,
-                           f.orientation * 180 / std::numbers::pi, f.region.pixels, status_of(f));
+                           f.orientation * 180 / std::numbers::pi, f.region.pixels, status_of(f),
+                           f.speed_check ? fmt::format("{:.3f}", *f.speed_check) : "");
     else
-      table += ",,,,,,,,,no pool\n";
+      table += ",,,,,,,,,no pool,\n";
   }
   return table;
 }
 
-std::string spoken(const Recording& recording, const Analysis& a) {
+std::string spoken(const Recording& recording, const Measurement& m) {
+  const Analysis& a = m.analysis;
   const auto& h = recording.header();
   std::string text =
       fmt::format("{}: {}, {} frame{} of {} x {} px, {}", h.path.filename().string(), h.format,
@@ -183,6 +201,15 @@ std::string spoken(const Recording& recording, const Analysis& a) {
     text += fmt::format(" (mean of {} frames, standard deviation of the length {:.3g} {})",
                         a.length.n, a.length.deviation * s, u);
   text += fmt::format(".\nLevel {:.6g} {}: {}.\n", *a.level.value, h.unit, a.level.how);
+  text += m.reference_used
+              ? "This level is independent of emissivity and transmission.\n"
+              : "Reference signal in the recording itself: none used, because " +
+                    m.reference.reason + ".\nThis level is not independent of the emissivity.\n";
+  if (m.emissivity && m.reference_used)
+    text += fmt::format(
+        "Implied emissivity: {:.3g} liquid{}.\n", m.emissivity->liquid,
+        m.emissivity->solid ? fmt::format(", {:.3g} solid", *m.emissivity->solid) : std::string());
+  if (m.budget) text += budget_text(*m.budget, a);
   if (a.only_incomplete)
     text +=
         "In no frame is the pool whole: it touches the border of the image or its front was not "

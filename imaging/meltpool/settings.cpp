@@ -1,16 +1,130 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/meltpool/settings.hpp"
 
-#include <cmath>
-#include <utility>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include "base/atomic_file.hpp"
-#include "base/error.hpp"
-
 namespace meltproof::imaging {
+
+namespace {
+
+InputTable reference_table(Settings& s) {
+  InputTable table("reference",
+                   "What must hold before a feature of the tail is taken for the "
+                   "solidification front.");
+  table
+      .quantity(s.rules.prominence,
+                {.name = "prominence",
+                 .unit = "1",
+                 .about = "least height of the feature in ln S; latent heat of steel makes about "
+                          "0.5, an emissivity from 0.2 to 0.3 makes 0.4, and smooth analytic "
+                          "tails are fitted with up to 0.1 where there is nothing",
+                 .minimum = 0.02,
+                 .maximum = 2})
+      .quantity(s.rules.significance,
+                {.name = "significance",
+                 .unit = "1",
+                 .about = "that height over its standard uncertainty; 5 as is usual for a claim "
+                          "of discovery",
+                 .minimum = 1,
+                 .maximum = 100})
+      .quantity(s.rules.flattening,
+                {.name = "flattening",
+                 .unit = "1",
+                 .about = "least part of its slope that the signal loses within the feature; "
+                          "latent heat of steel takes 0.8 and more",
+                 .minimum = 0.1,
+                 .maximum = 1})
+      .whole(s.fewest_lines, {.name = "fewest_lines",
+                              .about = "lines of pixels that must show it, the least number "
+                                       "that can outvote a defect",
+                              .minimum = 2,
+                              .maximum = 1000})
+      .quantity(s.rules.share, {.name = "share",
+                                .unit = "1",
+                                .about = "part of the lines across the front that must show it: "
+                                         "the majority",
+                                .minimum = 0.1,
+                                .maximum = 1});
+  return table;
+}
+
+InputTable budget_table(BudgetSettings& b) {
+  InputTable table("budget",
+                   "What is known of the inputs of the uncertainty budget; standard "
+                   "uncertainties.");
+  table
+      .quantity(b.point_spread,
+                {.name = "point_spread",
+                 .unit = "1",
+                 .about = "sigma of the optics' Gaussian point spread in pixels; the default is "
+                          "the virtual camera's, since the paper gives none: measure it "
+                          "(meltproof-calibrate reports the blur of the scale's edges)",
+                 .minimum = 0,
+                 .maximum = 10})
+      .quantity(b.u_point_spread,
+                {.name = "u_point_spread",
+                 .unit = "1",
+                 .about = "of it, in pixels; the default is an eighth of it, what the edges of a "
+                          "glass scale leave open",
+                 .minimum = 0,
+                 .maximum = 10})
+      .quantity(b.u_integration_time, {.name = "u_integration_time",
+                                       .unit = "1",
+                                       .about = "of the integration time, relative",
+                                       .minimum = 0,
+                                       .maximum = 1})
+      .quantity(b.u_reference_temperature,
+                {.name = "u_reference_temperature",
+                 .unit = "K",
+                 .about = "of the reference temperature: published liquidus temperatures of 316L "
+                          "differ by some 10 K with composition",
+                 .minimum = 0,
+                 .maximum = 500})
+      .quantity(b.u_emissivity, {.name = "u_emissivity",
+                                 .unit = "1",
+                                 .about = "of an emissivity that the level rests on, relative; "
+                                          "published values of steel scatter by more",
+                                 .minimum = 0,
+                                 .maximum = 1})
+      .quantity(b.u_transmission, {.name = "u_transmission",
+                                   .unit = "1",
+                                   .about = "of the windows' transmission, relative: the paper "
+                                            "gives four digits of a mean over the band",
+                                   .minimum = 0,
+                                   .maximum = 1})
+      .quantity(b.u_level, {.name = "u_level",
+                            .unit = "1",
+                            .about = "of a level that was given, relative to the signal above "
+                                     "dark; 0 takes it as exact",
+                            .minimum = 0,
+                            .maximum = 1})
+      .quantity(b.non_uniformity,
+                {.name = "non_uniformity",
+                 .unit = "1",
+                 .about = "standard deviation between the gains of pixels after the camera's own "
+                          "correction; makers promise some 0.2 to 0.5 %",
+                 .minimum = 0,
+                 .maximum = 1})
+      .whole(b.draws, {.name = "draws",
+                       .about = "of the Monte Carlo; 1000 fix the limits of a 95 % interval to "
+                                "some 5 % of its width",
+                       .minimum = 100,
+                       .maximum = 1000000});
+  return table;
+}
+
+}  // namespace
+
+MeasurementRequest Settings::measurement(const PixelSize& pixel) const {
+  MeasurementRequest m;
+  m.level = request();
+  m.dark = dark;
+  m.search = parse_reference_search(reference_signal);
+  m.rules = rules;
+  m.rules.fewest_lines = static_cast<std::size_t>(fewest_lines);
+  m.direction = parse_scan_direction(scan_direction);
+  m.pixel = pixel;
+  m.budget = budget;
+  return m;
+}
 
 Input declare(Settings& s) {
   InputTable root("thermography", "How a recording of a melt pool is read and measured.");
@@ -68,49 +182,40 @@ Input declare(Settings& s) {
       .text(s.scan_direction, {.name = "scan_direction",
                                .about = "where the beam goes in the image; y points downwards",
                                .choices = {"+x", "-x", "+y", "-y"}})
+      .text(s.reference_signal,
+            {.name = "reference_signal",
+             .about = "whether the signal of the phase boundary is looked for in the recording: "
+                      "auto uses it where it is found, unless a level or an emissivity is given; "
+                      "find gives no result without it",
+             .choices = {"auto", "find", "off"}})
+      .quantity(s.dark, {.name = "dark",
+                         .unit = "1",
+                         .about = "counts without light, for files that do not hold it; without "
+                                  "it nothing is looked for in bare counts",
+                         .minimum = -65536,
+                         .maximum = 65536})
+      .file(s.spectral_response,
+            {.name = "spectral_response",
+             .about = "CSV table of the detector's response by wavelength, which replaces the flat "
+                      "band of the file"})
+      .file(s.window_spectrum,
+            {.name = "window_spectrum",
+             .about = "CSV table of all windows' transmission together by wavelength, used with "
+                      "spectral_response instead of transmission"})
+      .file(s.uniform_cold,
+            {.name = "uniform_cold",
+             .about = "recording of a uniform cold surface in the same window and integration "
+                      "time, for the pixels' offsets; used with uniform_hot"})
+      .file(s.uniform_hot, {.name = "uniform_hot",
+                            .about = "recording of a uniform warmer surface, for the pixels' "
+                                     "gains"})
+      .table(reference_table(s))
+      .table(budget_table(s.budget))
       .file(s.calibration,
             {.name = "calibration",
              .about =
                  "calibration.json of meltproof-calibrate, for lengths in um instead of pixels"});
   return Input(std::move(root));
-}
-
-PixelSize read_pixel_size(const std::filesystem::path& calibration) {
-  const auto json = nlohmann::json::parse(read_file(calibration), nullptr, false);
-  if (!json.is_object())
-    throw InputError(fmt::format(
-        "{} is no JSON object; give the calibration.json that meltproof-calibrate wrote.",
-        calibration.string()));
-  const auto size = [&](const char* key) {
-    const bool usable = json.contains(key) && json[key].is_number() &&
-                        json[key].get<double>() > 0 && std::isfinite(json[key].get<double>());
-    if (!usable)
-      throw InputError(fmt::format(
-          "{}: the key {} is missing or is no positive number; give the calibration.json that "
-          "meltproof-calibrate wrote.",
-          calibration.string(), key));
-    return json[key].get<double>() * 1e-6;
-  };
-  const auto uncertainty = [&](const char* key) {
-    return json.contains(key) && json[key].is_number() ? json[key].get<double>() * 1e-6 : 0.0;
-  };
-  return {size("pixel_size_x_um"), size("pixel_size_y_um"), uncertainty("u_pixel_size_x_um"),
-          uncertainty("u_pixel_size_y_um")};
-}
-
-Recording apply(const Settings& settings, Recording recording) {
-  if (settings.kelvin_per_count)
-    recording = with_linear_temperature(std::move(recording), *settings.kelvin_per_count,
-                                        settings.zero_count_temperature);
-  auto& header = recording.header();
-  if (settings.frame_rate) {
-    if (header.frame_rate > 0 && std::abs(header.frame_rate / *settings.frame_rate - 1) > 1e-3)
-      throw InputError(fmt::format(
-          "{}: a frame rate of {:.6g} Hz was given, but the file says {:.6g} Hz; leave it out.",
-          header.path.string(), *settings.frame_rate, header.frame_rate));
-    header.frame_rate = *settings.frame_rate;
-  }
-  return recording;
 }
 
 }  // namespace meltproof::imaging

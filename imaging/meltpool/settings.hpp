@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/input.hpp"
-#include "imaging/meltpool/analysis.hpp"
+#include "imaging/meltpool/measurement.hpp"
 
 namespace meltproof::imaging {
 
@@ -18,10 +18,19 @@ struct Settings {
   double zero_count_temperature = 0;       ///< K at count 0 of that scale
   std::optional<double> scan_speed;        ///< m/s, to check the measured one
   std::string scan_direction = "+x";
+  std::string reference_signal = "auto";
+  std::optional<double> dark;  ///< counts without light, for files that do not hold it
+  BudgetSettings budget;
+  ReferenceRules rules;
+  long long fewest_lines = 3;
+  std::filesystem::path spectral_response, window_spectrum;
+  std::filesystem::path uniform_cold, uniform_hot;
   std::filesystem::path calibration;
   LevelRequest request() const {
     return {level, reference_temperature, emissivity, emissivity_liquid, transmission};
   }
+  /// @throws InputError for a scan direction or search that there is not.
+  MeasurementRequest measurement(const PixelSize& pixel) const;
 };
 
 /// The declaration of the settings, bound to `settings`.

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace meltproof::imaging {
@@ -23,7 +25,9 @@ double mann_kendall(std::span<const double> all) {
   std::map<double, double> ties;
   for (std::size_t i = 0; i < v.size(); ++i) {
     ties[v[i]] += 1;
-    for (std::size_t j = i + 1; j < v.size(); ++j) s += v[j] > v[i] ? 1 : v[j] < v[i] ? -1 : 0;
+    std::int64_t rising = 0;
+    for (std::size_t j = i + 1; j < v.size(); ++j) rising += (v[j] > v[i]) - (v[j] < v[i]);
+    s += static_cast<double>(rising);
   }
   double variance = n * (n - 1) * (2 * n + 5);
   for (const auto& [value, t] : ties) variance -= t * (t - 1) * (2 * t + 5);
@@ -58,6 +62,25 @@ Series summarise(std::span<const double> v) {
   }
   s.effective = std::max(1.0, n / (1 + 2 * rho_sum));
   return s;
+}
+
+double median(std::vector<double> v) {
+  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), middle, v.end());
+  return *middle;
+}
+
+RobustLine robust_line(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> slopes, rest;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = i + 1; j < x.size(); ++j) slopes.push_back((y[j] - y[i]) / (x[j] - x[i]));
+  RobustLine line;
+  line.slope = median(std::move(slopes));
+  for (std::size_t i = 0; i < x.size(); ++i) rest.push_back(y[i] - line.slope * x[i]);
+  line.intercept = median(rest);
+  for (auto& r : rest) r = std::abs(r - line.intercept);
+  line.deviation = 1.4826 * median(std::move(rest));
+  return line;
 }
 
 double slope(std::span<const double> x, std::span<const double> y) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace meltproof::imaging {
 
@@ -22,6 +23,18 @@ struct Series {
 };
 
 Series summarise(std::span<const double> values);
+
+/// The middle of some values, the upper of two. @param v not empty; taken by value to reorder.
+double median(std::vector<double> v);
+
+/// A straight line that a quarter of outliers does not move: the median of the slopes of all pairs
+/// (Theil 1950, Sen 1968), the median of the intercepts that follow, and 1.4826 times the median
+/// absolute deviation from it.
+struct RobustLine {
+  double slope = 0, intercept = 0, deviation = 0;
+};
+/// The cost grows with the square of the number. @param x,y as many of each, at least two.
+RobustLine robust_line(std::span<const double> x, std::span<const double> y);
 
 /// Slope of the straight line through (x, y) by least squares. @return NaN if the x are all alike.
 double slope(std::span<const double> x, std::span<const double> y);

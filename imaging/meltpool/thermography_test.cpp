@@ -85,7 +85,7 @@ TEST_F(Thermography, DescribesThePtwSampleAndSaysThatItHasNoPool) {
   EXPECT_NE(table.find("\n0,0,6116,6439,6269.10009,"), std::string::npos) << table.substr(0, 400);
   std::istringstream rows(table);
   for (std::string row; std::getline(rows, row);)
-    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 18) << row;
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 19) << row;
 }
 
 TEST_F(Thermography, DescribesTheSeqAndTiffSamples) {

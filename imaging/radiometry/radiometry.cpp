@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "imaging/radiometry/planck.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -34,13 +35,8 @@ struct Spectral {
 double spectral(double wavelength, void* data) {
   const auto& s = *static_cast<const Spectral*>(data);
   const double c = second_radiation_constant / wavelength;
-  const double x = c * s.inverse_temperature;
-  const double decay =
-      std::exp(-x);  // written with exp(-x), so that a cold body underflows to zero
-  const double bose = -std::expm1(-x);
-  const double l = first_radiation_constant /
-                   (wavelength * wavelength * wavelength * wavelength * wavelength) * decay / bose;
-  return s.derivative ? -c * l / bose : l;
+  const double l = planck_radiance(wavelength, s.inverse_temperature);
+  return s.derivative ? c * l / std::expm1(-c * s.inverse_temperature) : l;
 }
 
 double integrate(double lower, double upper, double inverse_temperature, bool derivative) {
@@ -66,6 +62,11 @@ double integrate(double lower, double upper, double inverse_temperature, bool de
   return result;
 }
 
+double radiance_of(const Radiometry& r, double temperature) {
+  return r.spectrum ? weighted_radiance(*r.spectrum, temperature)
+                    : band_radiance(r.band_lower, r.band_upper, temperature);
+}
+
 double window_radiance(const Radiometry& r, double radiance_of_window) {
   return r.window_emission ? (1 - r.transmission) * radiance_of_window : 0.0;
 }
@@ -89,6 +90,28 @@ double to_surface_radiance(const Radiometry& r, double signal, double ambient, d
 }
 
 }  // namespace
+
+double planck_radiance(double wavelength, double inverse_temperature) {
+  // Written with exp(-x), so that a cold body underflows to zero.
+  const double x = second_radiation_constant / wavelength * inverse_temperature;
+  return first_radiation_constant /
+         (wavelength * wavelength * wavelength * wavelength * wavelength) * std::exp(-x) /
+         -std::expm1(-x);
+}
+
+double planck_integral(double lower, double upper, double inverse_temperature,
+                       const std::function<double(double)>& weight) {
+  static const std::unique_ptr<gsl_integration_glfixed_table,
+                               decltype(&gsl_integration_glfixed_table_free)>
+      table(gsl_integration_glfixed_table_alloc(20), &gsl_integration_glfixed_table_free);
+  double sum = 0;
+  for (std::size_t i = 0; i < 20; ++i) {
+    double lambda = 0, w = 0;
+    gsl_integration_glfixed_point(lower, upper, i, &lambda, &w, table.get());
+    sum += w * weight(lambda) * planck_radiance(lambda, inverse_temperature);
+  }
+  return sum;
+}
 
 double band_radiance(double lower, double upper, double temperature) {
   return temperature > 0 ? integrate(lower, upper, 1 / temperature, false) : 0.0;
@@ -121,16 +144,17 @@ double signal(const Radiometry& r, double temperature) {
 }
 
 double signal(const Radiometry& r, double temperature, double emissivity) {
-  const auto l = [&](double t) { return band_radiance(r.band_lower, r.band_upper, t); };
+  const auto l = [&](double t) { return radiance_of(r, t); };
   return to_signal(r, emissivity, l(temperature), l(r.ambient_temperature),
                    l(r.window_temperature));
 }
 
 double temperature(const Radiometry& r, double signal) {
-  const auto l = [&](double t) { return band_radiance(r.band_lower, r.band_upper, t); };
-  return band_temperature(
-      r.band_lower, r.band_upper,
-      to_surface_radiance(r, signal, l(r.ambient_temperature), l(r.window_temperature)));
+  const auto l = [&](double t) { return radiance_of(r, t); };
+  const double surface =
+      to_surface_radiance(r, signal, l(r.ambient_temperature), l(r.window_temperature));
+  return r.spectrum ? weighted_temperature(*r.spectrum, surface)
+                    : band_temperature(r.band_lower, r.band_upper, surface);
 }
 
 bool BandTable::Hermite::covers(double x) const {

@@ -3,7 +3,10 @@
 // emissivity.
 #pragma once
 
+#include <memory>
 #include <vector>
+
+#include "imaging/radiometry/spectrum.hpp"
 
 namespace meltproof::imaging {
 
@@ -23,8 +26,8 @@ double band_temperature(double lower, double upper, double radiance);
 
 /// Everything between a surface and its counts, for one camera behind windows.
 ///   S = gain t_int [ tau (eps L(T) + (1 - eps) L(T_amb)) + window emission ] + dark
-/// The response within the band is flat; a band weighted by measured spectra enters by a second
-/// kind of band beside (lower, upper) in band_radiance() and BandTable, the equation above stays.
+/// The response within the band is flat unless a measured spectrum is given, which then replaces
+/// the band; `transmission` multiplies whatever of the windows the spectrum does not hold.
 struct Radiometry {
   double band_lower = 3e-6;        ///< m
   double band_upper = 5e-6;        ///< m
@@ -36,6 +39,9 @@ struct Radiometry {
   double window_temperature = 0;   ///< K; used with window_emission only
   double integration_time = 1;     ///< s
   bool window_emission = false;    ///< adds (1 - tau) L(T_window): windows that absorb also radiate
+  /// Response of the detector, times the windows' transmission where that is known by wavelength;
+  /// null: flat within the band.
+  std::shared_ptr<const Spectrum> spectrum = nullptr;
 };
 
 /// Signal of a surface at `temperature` (K) with the emissivity of `r`, counts.

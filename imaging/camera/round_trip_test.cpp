@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Synthetic passages of known truth through the whole measurement: the reference signal found in
+// the recording, spatter and plume, invariance, motion blur.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "imaging/camera/round_trip.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+PassageSettings scene(const char* view, double signal_to_noise, std::uint64_t seed) {
+  PassageSettings s;
+  s.source.view = view;
+  s.source.frames = 52;
+  s.camera.surface_row = s.source.view == "top" ? 19.6 : 11.7;
+  s.camera.emissivity_liquid = s.camera.emissivity_solid = 0.3;
+  s.start = -10;
+  s.seed = seed;
+  set_signal_to_noise(s, signal_to_noise);
+  return s;
+}
+
+PassageSettings with_emissivity_step(PassageSettings s, double signal_to_noise) {
+  s.camera.emissivity_liquid = 0.2;
+  set_signal_to_noise(s, signal_to_noise);
+  return s;
+}
+
+/// L / c of 316L: 2.6e5 J/kg over 700 J/(kg K).
+PassageSettings with_latent_heat(PassageSettings s, double signal_to_noise) {
+  s.solidification.latent_heat = 372;
+  s.source.absorbed_power = 75;
+  s.source.reference_temperature = 1683;
+  set_signal_to_noise(s, signal_to_noise);
+  return s;
+}
+
+MeasurementRequest request(const PassageSettings& s) {
+  MeasurementRequest r;
+  r.level.reference_temperature = s.source.reference_temperature;
+  r.pixel = {s.camera.pixel_size, s.camera.pixel_size, 0, 0};
+  return r;
+}
+
+void expect_length(const Measurement& m, const FilmedPassage& film, double tolerance) {
+  ASSERT_TRUE(m.budget);
+  EXPECT_TRUE(m.budget->corrected) << m.budget->reason;
+  EXPECT_NEAR(m.budget->length.value / film.length, 1, tolerance);
+  EXPECT_NEAR(m.budget->depth.value, film.depth, 17.6e-6);
+}
+
+TEST(ReferenceSignal, IsFoundAtAStepOfTheEmissivity) {
+  for (const double signal_to_noise : {20.0, 100.0}) {
+    const auto s = with_emissivity_step(scene("top", 100, 1), signal_to_noise);
+    const FilmedPassage film = film_passage(s);
+    const Measurement m = measure_recording(recording_of(film, s), request(s));
+    ASSERT_TRUE(m.reference_used) << m.reference.reason;
+    EXPECT_EQ(m.reference.signature, Signature::emissivity);
+    const double dark = s.camera.dark;
+    EXPECT_NEAR((m.reference.signal - dark) / (film.liquid_signal - dark), 1, 0.03);
+    ASSERT_TRUE(m.emissivity);
+    EXPECT_NEAR(m.emissivity->liquid, 0.2, 0.01);
+    EXPECT_NEAR(*m.emissivity->solid, 0.3, 0.02);
+    expect_length(m, film, 0.02);
+  }
+}
+
+TEST(ReferenceSignal, IsFoundAtTheShoulderOfLatentHeat) {
+  const auto s = with_latent_heat(scene("top", 100, 2), 100);
+  const FilmedPassage film = film_passage(s);
+  const Measurement m = measure_recording(recording_of(film, s), request(s));
+  ASSERT_TRUE(m.reference_used) << m.reference.reason;
+  EXPECT_EQ(m.reference.signature, Signature::latent_heat);
+  EXPECT_NEAR(m.emissivity->liquid, 0.3, 0.01);
+  expect_length(m, film, 0.02);
+}
+
+// Rosenthal's pool with one emissivity: nothing marks the boundary, and nothing may be found.
+TEST(ReferenceSignal, IsNotFoundWhereThereIsNone) {
+  for (const char* view : {"top", "side"})
+    for (const double signal_to_noise : {20.0, 100.0})
+      {
+        const auto s = scene(view, signal_to_noise, 1);
+        MeasurementRequest r = request(s);
+        r.search = ReferenceSearch::required;
+        const Measurement m = measure_recording(recording_of(film_passage(s), s), r);
+        EXPECT_FALSE(m.reference_used) << view << signal_to_noise;
+        EXPECT_FALSE(m.analysis.found);
+        EXPECT_NE(m.analysis.reason.find("nothing marks the solidification front"),
+                  std::string::npos)
+            << m.analysis.reason;
+      }
+}
+
+TEST(ReferenceSignal, IsRefusedWhereItMeansAnEmissivityThatNoMetalHas) {
+  const auto s = with_emissivity_step(scene("top", 100, 1), 100);
+  MeasurementRequest r = request(s);
+  r.level.transmission = 0.05;  // the film has 0.313: 0.2 would be 1.25
+  const Measurement m = measure_recording(recording_of(film_passage(s), s), r);
+  EXPECT_FALSE(m.reference_used);
+  ASSERT_TRUE(m.emissivity);
+  EXPECT_FALSE(m.emissivity->believable());
+  EXPECT_NE(m.reference.reason.find("refused"), std::string::npos) << m.reference.reason;
+}
+
+// The reason for the method: half the radiance, the same outline.
+TEST(Invariance, NoVertexMovesWhenTheSceneIsDimmed) {
+  const auto s = with_latent_heat(scene("top", 100, 3), 100);
+  const FilmedPassage film = film_passage(s);
+  const Recording full = recording_of(film, s);
+  const Measurement a = measure_recording(full, request(s));
+  ASSERT_TRUE(a.reference_used);
+  for (const double k : {0.5, 0.77}) {
+    FilmedPassage dimmed = film;
+    for (auto& frame : dimmed.frames)
+      for (float& v : frame)
+        v = static_cast<float>(s.camera.dark + k * (static_cast<double>(v) - s.camera.dark));
+    const Recording recording = recording_of(dimmed, s);
+    const Measurement b = measure_recording(recording, request(s));
+    ASSERT_TRUE(b.reference_used) << b.reference.reason;
+    double largest = 0;
+    for (std::size_t i = 10; i < 40; i += 5) {
+      const auto p = pool_in(full, a.analysis, full.frame(i)), q = pool_in(recording, b.analysis, recording.frame(i));
+      ASSERT_TRUE(p && q);
+      ASSERT_EQ(p->edge.size(), q->edge.size());
+      for (std::size_t e = 0; e < p->edge.size(); ++e)
+        largest = std::max(largest, std::hypot(p->edge[e].from.x - q->edge[e].from.x,
+                                               p->edge[e].from.y - q->edge[e].from.y));
+    }
+    std::cout << "largest move of a vertex at " << k << " of the radiance: " << largest << " px\n";
+    EXPECT_LT(largest, 0.01);
+    EXPECT_NEAR(b.budget->length.value / a.budget->length.value, 1, 1e-3);
+  }
+}
+
+TEST(Tracking, SpatterAndPlumeChangeTheLengthByLessThanThreePerCent) {
+  auto s = with_emissivity_step(scene("top", 100, 4), 100);
+  const double hot = film_passage(s).liquid_signal;
+  // Spatter that leaves the pool, larger than it is when it enters; a plume that drifts over it.
+  s.bright.push_back({20, 20, 3.5, -0.6, 1.5, 3 * hot, 12, 30});
+  s.bright.push_back({60, 30, -1.0, 0.4, 1.2, 4 * hot, 5, 25});
+  s.bright.push_back({0, 6, 2.0, 0.3, 4.0, 2 * hot, 2, 14});
+  s.bright.push_back({30, 16, 2.0, -0.1, 2.5, 0.5 * hot, 20, 27});
+  const FilmedPassage film = film_passage(s);
+  const Measurement m = measure_recording(recording_of(film, s), request(s));
+  ASSERT_TRUE(m.reference_used) << m.reference.reason;
+  expect_length(m, film, 0.03);
+  for (const auto& f : m.analysis.frames)
+    if (f.complete) {
+      EXPECT_LT(std::abs(*f.speed_check), 3);
+    }
+}
+
+// Rosenthal's pool at the beam speed of NIST's AMMT with 20 and 100 us: what motion alone does.
+// Lane et al. (2020) saw 300 and 348 um; the part that motion explains is stated, not asked for.
+TEST(MotionBlur, LengthensThePoolByLessThanNistSaw) {
+  double length[2];
+  int k = 0;
+  for (const double time : {20e-6, 100e-6}) {
+    PassageSettings s = scene("top", 100, 5);
+    s.source.scan_speed = 0.4;
+    s.camera.integration_time = time;
+    s.camera.pixel_size = 8e-6;
+    s.camera.frame_rate = 10000;
+    s.camera.width = 126;
+    s.camera.height = 80;
+    s.camera.surface_row = 39.6;
+    s.camera.point_spread = 1;
+    set_signal_to_noise(s, 100);
+    const FilmedPassage film = film_passage(s);
+    LevelRequest level;
+    level.level = film.solid_signal;
+    const Analysis a = analyse(recording_of(film, s), level, ScanDirection::right,
+                               {s.camera.pixel_size, s.camera.pixel_size, 0, 0});
+    length[k++] = a.length.mean;
+  }
+  const double longer = length[1] / length[0] - 1;
+  std::cout << "analytic pool seen with 100 us against 20 us: " << 100 * longer
+            << " % longer (NIST: 15 to 21 %)\n";
+  RecordProperty("relative_change", std::to_string(longer));
+  EXPECT_GT(longer, 0);
+  EXPECT_LT(longer * length[0], 0.4 * 80e-6);  // never more than the motion itself
+}
+
+}  // namespace
+}  // namespace meltproof::imaging

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/budget.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include <fmt/format.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include "imaging/meltpool/uneven_pixels.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+using Random = std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)>;
+
+struct Input {
+  Contribution row;
+  std::function<Effect(gsl_rng*)> draw;
+};
+
+/// What the fits leave at an end of an analytic pool at a random place of the grid, px (correction
+/// study, correction_test.cpp), and the depth's extrapolation.
+constexpr double u_fit = 0.06;
+
+/// Half the width of the middle 68.3 %: the standard deviation of a normal distribution, and finite
+/// for a t distribution of two degrees of freedom, which has none.
+double deviation(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  const auto part = [&](double q) {
+    return v[static_cast<std::size_t>(std::lround(q * static_cast<double>(v.size() - 1)))];
+  };
+  return 0.5 * (part(0.8413) - part(0.1587));
+}
+
+/// Scatter of the mean of a series: a scaled t distribution (JCGM 101, 6.4.9) with as many degrees
+/// of freedom as independent values, less one.
+double draw_mean(gsl_rng* random, const Series& s) {
+  if (s.n < 2) return 0;
+  return s.uncertainty_of_mean() * gsl_ran_tdist(random, std::max(2.0, s.effective - 1));
+}
+
+/// Mean over a part of the frames: the choice of what counts as steady.
+Effect windowed(const Analysis& a, double from, double to) {
+  std::vector<const FrameResult*> used;
+  for (const auto& f : a.frames)
+    if (a.only_incomplete ? f.found : f.complete) used.push_back(&f);
+  const auto n = static_cast<double>(used.size());
+  Effect mean;
+  double count = 0;
+  for (auto i = static_cast<std::size_t>(from * n); i < static_cast<std::size_t>(to * n); ++i) {
+    mean.length += used[i]->length;
+    mean.depth += used[i]->depth;
+    count += 1;
+  }
+  if (count > 0) mean.length /= count, mean.depth /= count;
+  return mean;
+}
+
+/// Standard uncertainty of ln(S - dark) of the level, and what it is made of.
+std::pair<double, std::string> level_uncertainty(const RecordingHeader& h, const Analysis& a,
+                                                 const BudgetSettings& s) {
+  switch (a.level.kind) {
+    case LevelKind::given:
+      return {s.u_level, "of the level that was given (u_level)"};
+    case LevelKind::radiometry: {
+      const auto& r = *h.radiometry;
+      const double t = a.level.reference_temperature, dark = a.level.interpolation.dark;
+      const double slope = std::log((signal(r, t + 1) - dark) / (signal(r, t - 1) - dark)) / 2;
+      return {std::hypot(slope * s.u_reference_temperature,
+                         std::hypot(s.u_emissivity, s.u_transmission)),
+              fmt::format("reference temperature {:.3g} K, emissivity {:.3g} %, transmission "
+                          "{:.3g} %: the level is not independent of them",
+                          s.u_reference_temperature, 100 * s.u_emissivity, 100 * s.u_transmission)};
+    }
+    case LevelKind::temperature:
+      return {s.u_reference_temperature / a.level.reference_temperature,
+              fmt::format("reference temperature {:.3g} K", s.u_reference_temperature)};
+    default:
+      return {0, "of a threshold of brightness none is known"};
+  }
+}
+
+}  // namespace
+
+Budget uncertainty_budget(const Recording& recording, const Analysis& a, const PixelSize& pixel,
+                          const Stack* stack, const std::string& no_stack,
+                          const ReferenceSignal* found, const BudgetSettings& s) {
+  Budget budget;
+  const auto& h = recording.header();
+  const double along = pixel.known() ? (a.along_x ? pixel.x : pixel.y) : 1;
+  const double across = pixel.known() ? (a.along_x ? pixel.y : pixel.x) : 1;
+  const double u_along = pixel.known() ? (a.along_x ? pixel.u_x : pixel.u_y) / along : 0;
+  const double u_across = pixel.known() ? (a.along_x ? pixel.u_y : pixel.u_x) / across : 0;
+  const double dark = a.level.interpolation.dark;
+  budget.reason = no_stack;
+
+  std::optional<CorrectedPool> pool;
+  PlateEdge edge;
+  double shift = 0;
+  if (stack != nullptr) {
+    shift = stack->speed * h.integration_time * h.frame_rate;
+    const Blur blur = total_blur(s.point_spread, shift);
+    budget.blur_along = blur.along;
+    budget.blur_across = blur.across;
+    const bool front = found != nullptr && found->signature != Signature::none;
+    if (a.level.interpolation.logarithmic && (front || !a.level.step)) {
+      const double level = front ? found->blurred_signal : *a.level.value;
+      edge =
+          refined_plate_edge(*stack, dark, level, blur, find_plate_edge(*stack, dark, level, blur));
+      pool = corrected_pool(*stack, a.level, dark, blur, edge, found);
+      if (!pool) budget.reason = "the ends of the mean pool could not be fitted";
+    } else {
+      budget.reason = a.level.step ? "the front is known by its step alone"
+                                   : "the signal without light is not known";
+    }
+  }
+  budget.plate_edge = edge.present;
+  budget.plate_row = edge.row + 0.5;
+  budget.corrected = pool.has_value();
+
+  std::vector<Input> inputs;
+  const auto normal = [](gsl_rng* r, double sigma) {
+    return gsl_ran_gaussian_ziggurat(r, 1) * sigma;
+  };
+  const auto add = [&](std::string name, std::string type, std::string how, auto draw,
+                       double correction_length = 0, double correction_depth = 0) {
+    inputs.push_back({{std::move(name), std::move(type), 0, 0, correction_length, correction_depth,
+                       std::move(how)},
+                      std::move(draw)});
+  };
+  add("scatter between frames", "A",
+      fmt::format("t distribution, {:.1f} independent frames of {}", a.length.effective,
+                  a.length.n),
+      [&](gsl_rng* r) {
+        return Effect{draw_mean(r, a.length), draw_mean(r, a.depth)};
+      });
+  add("pixel size", "B", "of the calibration", [&, u_along, u_across](gsl_rng* r) {
+    return Effect{a.length.mean * normal(r, u_along), a.depth.mean * normal(r, u_across)};
+  });
+  if (a.length.n >= 8)
+    add("choice of the steady part", "A",
+        "mean over frames with up to a quarter left out at either end", [&](gsl_rng* r) {
+          const double from = 0.25 * gsl_rng_uniform(r), to = 1 - 0.25 * gsl_rng_uniform(r);
+          const Effect e = windowed(a, from, to);
+          return Effect{e.length - a.length.mean, e.depth - a.depth.mean};
+        });
+  const auto uneven = std::make_shared<UnevenPixels>(recording, a, pixel, s.non_uniformity);
+  add("non-uniformity of the pixels", "B",
+      fmt::format("gains differ by {:.2g} %", 100 * s.non_uniformity),
+      [uneven](gsl_rng* r) { return (*uneven)(r); });
+  if (pool) {
+    const auto [u_log, how] = level_uncertainty(h, a, s);
+    if (pool->front_found)
+      add("reference signal S*", "A",
+          "place of the front by bootstrap over lines and for another point spread; independent of "
+          "emissivity and transmission",
+          [&](gsl_rng* r) {
+            return Effect{along * normal(r, pool->u_end),
+                          across * pool->depth_by_log_level * normal(r, found->relative_u)};
+          });
+    else
+      add("level", "B", how, [&, u = u_log](gsl_rng* r) {
+        const double d = normal(r, u);
+        return Effect{along * pool->by_log_level * d, across * pool->depth_by_log_level * d};
+      });
+    const double noise = along * pool->blurred_length - a.length.mean;
+    const double noise_depth = across * pool->blurred_depth - a.depth.mean;
+    add(
+        "noise and sampling of single frames", "A",
+        "mean of the frames' outlines against the outline of the mean pool",
+        [&](gsl_rng* r) {
+          return Effect{
+              along * normal(r, std::hypot(pool->u_onset, pool->front_found ? 0 : pool->u_end)), 0};
+        },
+        noise, noise_depth);
+    add(
+        "point spread, motion and pixels", "B",
+        fmt::format("ends by a model blurred by {:.2f} px along and {:.2f} px across; sigma of the "
+                    "point spread {:.2g} +- {:.2g} px, motion {:.2f} px",
+                    budget.blur_along, budget.blur_across, s.point_spread, s.u_point_spread, shift),
+        [&](gsl_rng* r) {
+          const double by_point_spread = s.point_spread / std::max(budget.blur_across, 1e-9);
+          const double by_motion =
+              shift * shift * s.u_integration_time / (12 * std::max(budget.blur_along, 1e-9));
+          const double d = by_point_spread * normal(r, s.u_point_spread) + normal(r, by_motion);
+          return Effect{along * pool->by_blur * d,
+                        across * (pool->depth - pool->blurred_depth) *
+                            (2 * d / std::max(budget.blur_across, 1e-9))};
+        },
+        along * (pool->length() - pool->blurred_length),
+        across * (pool->depth - pool->blurred_depth));
+    add("model of the ends", "B",
+        "what the fits leave on analytic pools; the depth's by half the extrapolation's own doubt",
+        [&](gsl_rng* r) {
+          return Effect{along * std::sqrt(2.0) * normal(r, u_fit),
+                        across * (normal(r, u_fit) +
+                                  (2 * gsl_rng_uniform(r) - 1) * std::max(pool->doubt_depth, 0.2))};
+        });
+    if (edge.present)
+      add("border of the plate", "A",
+          fmt::format("at {:.2f} px of the image, by a fit of the blurred border", edge.row + 0.5),
+          [&](gsl_rng* r) {
+            const double d = normal(r, edge.u_row);
+            return Effect{along * pool->by_plate_edge * d, -across * d};
+          });
+  } else {
+    const double contour = 0.1;
+    add("edge between pixels", "B", "where the edge falls between pixels (contour_test.cpp)",
+        [=](gsl_rng* r) {
+          return Effect{along * normal(r, contour), across * normal(r, contour)};
+        });
+  }
+
+  const Random random(gsl_rng_alloc(gsl_rng_mt19937), &gsl_rng_free);
+  gsl_rng_set(random.get(), static_cast<unsigned long>(s.seed));
+  const auto draws = static_cast<std::size_t>(std::max<long long>(s.draws, 100));
+  std::vector<double> length(draws, a.length.mean), depth(draws, a.depth.mean);
+  for (auto& input : inputs) {
+    // Few of them are needed for what is measured anew in every draw: its effects are used again.
+    const bool slow = input.row.name == "non-uniformity of the pixels";
+    const std::size_t own = slow ? std::min<std::size_t>(draws, 100) : draws;
+    std::vector<double> l, d;
+    for (std::size_t i = 0; i < own; ++i) {
+      const Effect e = input.draw(random.get());
+      l.push_back(e.length);
+      d.push_back(e.depth);
+    }
+    input.row.u_length = deviation(l);
+    input.row.u_depth = deviation(d);
+    for (std::size_t i = 0; i < draws; ++i) {
+      length[i] += l[i % own] + input.row.correction_length;
+      depth[i] += d[i % own] + input.row.correction_depth;
+    }
+    budget.rows.push_back(input.row);
+  }
+  const auto estimate = [&](std::vector<double> v, double mean, auto correction) {
+    Estimate e;
+    e.value = mean;
+    for (const auto& row : budget.rows) e.value += correction(row);
+    e.u = deviation(v);
+    std::sort(v.begin(), v.end());
+    const auto part = [&](double q) {
+      return v[static_cast<std::size_t>(std::lround(q * static_cast<double>(v.size() - 1)))];
+    };
+    e.low = part(0.025);
+    e.high = part(0.975);
+    return e;
+  };
+  budget.length =
+      estimate(length, a.length.mean, [](const auto& r) { return r.correction_length; });
+  budget.depth = estimate(depth, a.depth.mean, [](const auto& r) { return r.correction_depth; });
+  return budget;
+}
+
+}  // namespace meltproof::imaging

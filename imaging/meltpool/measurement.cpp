@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/measurement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+/// The level that a reference signal amounts to.
+Level level_of(const ReferenceSignal& found, double dark, double reference_temperature) {
+  Level level;
+  level.kind = LevelKind::recording;
+  level.reference_temperature = reference_temperature;
+  level.interpolation = {.logarithmic = true, .dark = dark};
+  if (found.signature == Signature::emissivity && found.solid_signal > found.signal) {
+    level.step = EmissivityStep{dark, found.signal, found.solid_signal};
+    level.value = level.step->level();
+    level.how = fmt::format(
+        "the solidification front was found in the recording, where the signal steps from {:.6g} "
+        "to {:.6g} behind it (S* = {:.6g}); levels are crossed more than once there, and the "
+        "outermost, the step itself, is the front; independent of emissivity and transmission",
+        found.signal, found.solid_signal, found.signal);
+  } else {
+    level.value = found.blurred_signal;
+    level.how = fmt::format(
+        "the solidification front was found in the recording by the shoulder that latent heat "
+        "makes in the tail (S* = {:.6g}, {:.6g} as the blurred recording shows it); independent "
+        "of emissivity and transmission",
+        found.signal, found.blurred_signal);
+  }
+  return level;
+}
+
+/// A level at a quarter of the recording's own brightness: what registers the frames must scale
+/// with the scene, or the reference signal would not.
+Level registration_level(const Level& level, const Analysis& analysis) {
+  const double dark = level.interpolation.dark;
+  double highest = dark;
+  for (const auto& f : analysis.frames) highest = std::max(highest, f.values.high);
+  std::vector<double> bright;
+  for (const auto& f : analysis.frames)
+    if (f.values.high - dark >= 0.5 * (highest - dark)) bright.push_back(f.values.high);
+  Level own = level;
+  own.step.reset();
+  own.value = dark + 0.25 * (median(bright) - dark);
+  return own;
+}
+
+}  // namespace
+
+ReferenceSearch parse_reference_search(const std::string& text) {
+  if (text == "auto") return ReferenceSearch::automatic;
+  if (text == "find") return ReferenceSearch::required;
+  if (text == "off") return ReferenceSearch::off;
+  throw InputError(
+      fmt::format("The reference signal is \"{}\"; expected auto, find or off.", text));
+}
+
+Measurement measure_recording(const Recording& recording, const MeasurementRequest& request) {
+  const auto& h = recording.header();
+  Measurement m;
+  Level level = find_level(recording, request.level);
+  if (request.dark && !h.radiometry && h.quantity == SignalQuantity::counts)
+    level.interpolation = {.logarithmic = true, .dark = *request.dark};
+  const bool logarithmic = level.interpolation.logarithmic;
+  const double dark = level.interpolation.dark;
+  m.analysis = analyse_at(recording, level, request.direction, request.pixel);
+  if (!m.analysis.found) return m;
+  StackResult stack = stack_frames(recording, m.analysis, request.direction);
+  const bool search = request.search != ReferenceSearch::off && logarithmic &&
+                      h.quantity != SignalQuantity::temperature;
+  if (search) {
+    StackResult own = stack_frames(recording,
+                                   analyse_at(recording, registration_level(level, m.analysis),
+                                              request.direction, request.pixel),
+                                   request.direction);
+    if (own.stack || !stack.stack) stack = std::move(own);
+  }
+
+  if (request.search == ReferenceSearch::off) {
+    m.reference.reason = "it was not looked for (reference_signal = \"off\")";
+  } else if (!logarithmic) {
+    m.reference.reason =
+        "the recording does not say what its signal is without light; give it with --dark";
+  } else if (h.quantity == SignalQuantity::temperature) {
+    m.reference.reason = "the recording holds temperatures that its maker's software has computed";
+  } else if (!stack.stack) {
+    m.reference.reason = stack.reason;
+  } else {
+    const double shift = stack.stack->speed * h.integration_time * h.frame_rate;
+    const Blur blur = total_blur(request.budget.point_spread, shift);
+    const double at = *registration_level(level, m.analysis).value;
+    const PlateEdge edge = refined_plate_edge(*stack.stack, dark, at, blur,
+                                              find_plate_edge(*stack.stack, dark, at, blur));
+    m.reference =
+        find_reference_signal(*stack.stack, dark, blur, edge, request.budget.u_point_spread,
+                              request.rules, request.budget.seed);
+    const double temperature =
+        request.level.reference_temperature.value_or(default_reference_temperature);
+    if (m.reference.signature != Signature::none && h.radiometry) {
+      Radiometry r = *h.radiometry;
+      if (request.level.transmission) r.transmission = *request.level.transmission;
+      m.emissivity = implied_emissivity(m.reference, r, temperature);
+      if (!m.emissivity->believable()) {
+        m.reference.signature = Signature::none;
+        m.reference.reason = fmt::format(
+            "a front was found at S* = {:.6g}, but it would mean an emissivity of {:.3g} of the "
+            "liquid{} at {:.6g} K, outside {} to {}: it is refused",
+            m.reference.signal, m.emissivity->liquid,
+            m.emissivity->solid ? fmt::format(" and {:.3g} of the solid", *m.emissivity->solid)
+                                : std::string(),
+            temperature, ImpliedEmissivity::least, ImpliedEmissivity::most);
+      }
+    }
+    const bool told =
+        request.level.level || request.level.emissivity || request.level.emissivity_liquid;
+    if (m.reference.signature != Signature::none &&
+        (!told || request.search == ReferenceSearch::required)) {
+      m.reference_used = true;
+      m.analysis = analyse_at(recording, level_of(m.reference, dark, temperature),
+                              request.direction, request.pixel);
+    }
+  }
+  if (request.search == ReferenceSearch::required && !m.reference_used) {
+    m.analysis.found = false;
+    m.analysis.reason =
+        "The reference signal was not found in the recording: " + m.reference.reason + ".";
+    return m;
+  }
+  if (m.analysis.found)
+    m.budget = uncertainty_budget(recording, m.analysis, request.pixel,
+                                  stack.stack ? &*stack.stack : nullptr, stack.reason,
+                                  m.reference_used ? &m.reference : nullptr, request.budget);
+  return m;
+}
+
+}  // namespace meltproof::imaging

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The uncertainty budget and the reference signal in summary.json and for a person.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "imaging/meltpool/measurement.hpp"
+
+namespace meltproof::imaging {
+
+/// Whether S* was found and used, its value with its uncertainty, and the emissivity it implies.
+nlohmann::json reference_json(const Measurement& measurement, const RecordingHeader& header);
+
+/// Corrected length and depth with their intervals, and one row for every input.
+nlohmann::json budget_json(const Budget& budget, const Analysis& analysis);
+
+/// The same as lines of text.
+std::string budget_text(const Budget& budget, const Analysis& analysis);
+
+}  // namespace meltproof::imaging

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the settings make of a recording and of a calibration file.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.hpp"
+#include "base/error.hpp"
+#include "imaging/meltpool/settings.hpp"
+#include "imaging/radiometry/spectrum.hpp"
+#include "imaging/radiometry/uniformity.hpp"
+#include "imaging/recording/formats.hpp"
+
+namespace meltproof::imaging {
+
+PixelSize read_pixel_size(const std::filesystem::path& calibration) {
+  const auto json = nlohmann::json::parse(read_file(calibration), nullptr, false);
+  if (!json.is_object())
+    throw InputError(fmt::format(
+        "{} is no JSON object; give the calibration.json that meltproof-calibrate wrote.",
+        calibration.string()));
+  const auto size = [&](const char* key) {
+    const bool usable = json.contains(key) && json[key].is_number() &&
+                        json[key].get<double>() > 0 && std::isfinite(json[key].get<double>());
+    if (!usable)
+      throw InputError(fmt::format(
+          "{}: the key {} is missing or is no positive number; give the calibration.json that "
+          "meltproof-calibrate wrote.",
+          calibration.string(), key));
+    return json[key].get<double>() * 1e-6;
+  };
+  const auto uncertainty = [&](const char* key) {
+    return json.contains(key) && json[key].is_number() ? json[key].get<double>() * 1e-6 : 0.0;
+  };
+  return {size("pixel_size_x_um"), size("pixel_size_y_um"), uncertainty("u_pixel_size_x_um"),
+          uncertainty("u_pixel_size_y_um")};
+}
+
+namespace {
+
+/// Mean of up to 200 frames.
+std::vector<double> mean_frame(const std::filesystem::path& path) {
+  const Recording reference = open_recording(path);
+  const std::size_t n = std::min<std::size_t>(reference.header().frames, 200);
+  std::vector<double> mean(reference.header().width * reference.header().height, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Frame frame = reference.frame(k);
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      mean[i] += static_cast<double>(frame.values[i]) / static_cast<double>(n);
+  }
+  return mean;
+}
+
+Recording made_uniform(const Settings& settings, Recording recording) {
+  if (settings.uniform_cold.empty() || settings.uniform_hot.empty())
+    throw InputError("uniform_cold and uniform_hot belong together: give both or neither.");
+  auto header = recording.header();
+  if (header.quantity != SignalQuantity::counts)
+    throw InputError(
+        fmt::format("{}: pixels can be made uniform in counts only, but the file "
+                    "holds {}; leave uniform_cold and uniform_hot out.",
+                    header.path.string(), quantity_name(header.quantity)));
+  const Uniformity uniformity =
+      two_point(mean_frame(settings.uniform_cold), mean_frame(settings.uniform_hot));
+  header.notes.push_back(
+      fmt::format("Offsets and gains of the pixels are corrected by two references: gains differed "
+                  "by {:.2g} %, "
+                  "{} dead pixel{}.",
+                  100 * uniformity.spread, uniformity.dead, uniformity.dead == 1 ? "" : "s"));
+  return {header, [source = std::move(recording), uniformity](std::size_t index, Frame& frame) {
+            frame = source.frame(index);
+            correct(uniformity, frame.values, source.header().saturation,
+                    source.header().under_range);
+          }};
+}
+
+}  // namespace
+
+Recording apply(const Settings& settings, Recording recording) {
+  if (!settings.uniform_cold.empty() || !settings.uniform_hot.empty())
+    recording = made_uniform(settings, std::move(recording));
+  if (!settings.spectral_response.empty()) {
+    if (!recording.header().radiometry)
+      throw InputError(
+          fmt::format("{}: spectral_response was given, but the file holds no gain, "
+                      "so a radiance has no signal; leave it out.",
+                      recording.header().path.string()));
+    std::vector<Spectrum> spectra = {read_spectrum(settings.spectral_response)};
+    if (!settings.window_spectrum.empty()) {
+      if (settings.transmission)
+        throw InputError(
+            "window_spectrum and transmission both say what the windows transmit; "
+            "give one of them.");
+      spectra.push_back(read_spectrum(settings.window_spectrum));
+      recording.header().radiometry->transmission = 1;
+    }
+    recording.header().radiometry->spectrum = std::make_shared<Spectrum>(product(spectra));
+  } else if (!settings.window_spectrum.empty()) {
+    throw InputError("window_spectrum is used with spectral_response; give that as well.");
+  }
+  if (settings.kelvin_per_count)
+    recording = with_linear_temperature(std::move(recording), *settings.kelvin_per_count,
+                                        settings.zero_count_temperature);
+  auto& header = recording.header();
+  if (settings.frame_rate) {
+    if (header.frame_rate > 0 && std::abs(header.frame_rate / *settings.frame_rate - 1) > 1e-3)
+      throw InputError(fmt::format(
+          "{}: a frame rate of {:.6g} Hz was given, but the file says {:.6g} Hz; leave it out.",
+          header.path.string(), *settings.frame_rate, header.frame_rate));
+    header.frame_rate = *settings.frame_rate;
+  }
+  return recording;
+}
+
+}  // namespace meltproof::imaging

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model of the mean pool's tail with its solidification front, as the camera blurs it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "imaging/meltpool/blur.hpp"
+#include "imaging/meltpool/stack.hpp"
+
+namespace meltproof::imaging {
+
+/// ln(S - dark) = F(theta(x, y)), where theta is smooth (a polynomial along and across the scan)
+/// and F is one up to a signal theta*, then adds `rise` over an interval `interval` of theta, and
+/// is one again:
+///   F(theta) = theta + rise min(max((theta* - theta) / interval, 0), 1).
+/// Released heat that holds the temperature has rise < interval, so that the signal falls less for
+/// a while (theta is then the scaled enthalpy); an emissivity that steps from that of liquid to
+/// that of solid metal has rise = ln(solid / liquid) > interval, so that the signal rises. The
+/// front is the line theta(x, y) = theta*. The model's signal is blurred before it is compared with
+/// the stack, so that front and signal are those without blur.
+struct TailModel {
+  double log_signal = 0;                ///< theta*
+  double rise = 0;                      ///< of ln S
+  double interval = 0;                  ///< of theta
+  double u_log_signal = 0, u_rise = 0;  ///< standard uncertainties, by bootstrap over lines
+  double front = 0;                     ///< px along a line, outermost place of the front
+  double u_front = 0;                   ///< by bootstrap over lines
+  double blurred = 0;                   ///< ln(S - dark) that the blurred model has at that place
+  double slope = 0;                     ///< of theta a pixel at that place, outwards: negative
+  double misfit = 0;                    ///< chi-squared over degrees of freedom
+  double explained = 0;              ///< chi-squared that the front explains, in units of `misfit`
+  std::size_t lines = 0;             ///< lines of pixels that the front crosses within the fit
+  std::size_t lines_with_front = 0;  ///< of them, those where it explains chi-squared of 25 or more
+};
+
+/// Where metal begins across the scan: above `row` (px, line number and fraction) there is none.
+struct PlateEdge {
+  bool present = false;
+  double row = 0, u_row = 0;
+};
+
+/// Fits the model to the part of the stack's tail around the signal `start` (ln(S - dark)), within
+/// seven pixels of where the stack falls to it. @return nothing where that part is too small or
+/// the fit does not converge onto a front within it. @param steps of Levenberg and Marquardt, at
+/// most.
+std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double start, std::uint64_t seed,
+                                  int steps = 60);
+
+/// An end of the mean pool without the blur.
+struct SharpEdge {
+  double position = 0;  ///< px along a line, outermost place
+  double u = 0;         ///< px, standard uncertainty by bootstrap over lines
+  double misfit = 0;    ///< chi-squared over degrees of freedom
+};
+
+/// Where the mean pool ends at a signal, `log_level` = ln(S - dark), without the blur: the same
+/// model without a front, fitted to the tail or to the leading edge. @return nothing where there
+/// are too few samples or the field does not fall to the level within them.
+std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double log_level, bool leading,
+                                  std::uint64_t seed);
+
+}  // namespace meltproof::imaging
