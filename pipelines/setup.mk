@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # From a bare machine to the built programs.
 
-PROGRAMS := powder solve export verify camera thermography calibrate linescan compare studies
+PROGRAMS := powder solve export verify camera thermography campaign calibrate linescan compare studies
 PROGRAM_FILES := $(PROGRAMS:%=$(BIN)/meltproof-%)
 
 .PHONY: packages build
