@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the writer and the reader of artifacts share of HDF5; only they include this.
+// What writer and reader of artifacts share of HDF5 with readers of other HDF5 files; nobody else
+// includes this.
 #pragma once
 
 #include <algorithm>

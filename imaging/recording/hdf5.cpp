@@ -7,12 +7,27 @@
 
 #include "base/artifact.hpp"
 #include "base/error.hpp"
+#include "imaging/recording/hdf5_array.hpp"
 
 namespace meltproof::imaging {
 
-bool is_hdf5(std::string_view first_bytes) { return first_bytes.substr(0, 4) == "\x89HDF"; }
+namespace {
 
-Recording open_hdf5(const std::filesystem::path& path) {
+Recording open_own(const std::filesystem::path& path);
+
+}  // namespace
+
+bool is_hdf5(std::string_view first_bytes) { return first_bytes.starts_with("\x89HDF\r\n\x1a\n"); }
+
+Recording open_hdf5(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string kind = ArtifactReader(path).attribute("kind");
+  if (kind.starts_with("meltproof") && options.dataset.empty()) return open_own(path);
+  return open_hdf5_array(path, options, "fhw", false);
+}
+
+namespace {
+
+Recording open_own(const std::filesystem::path& path) {
   const auto file = std::make_shared<ArtifactReader>(path, "meltproof recording");
   const auto shape = file->shape("frames");
   if (shape.size() != 3)
@@ -63,5 +78,7 @@ Recording open_hdf5(const std::filesystem::path& path) {
             if (!times.empty()) frame.time = times[index] - times.front();
           }};
 }
+
+}  // namespace
 
 }  // namespace meltproof::imaging
