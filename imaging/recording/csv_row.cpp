@@ -86,14 +86,14 @@ bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector
 }
 
 bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDialect& dialect) {
-  std::string separators = "\t;, ";
+  std::string separators = "\t;,| ";
   if (!options.separator.empty()) {
     const auto named = named_separators.find(options.separator);
-    if (named == named_separators.end() && options.separator.size() != 1)
-      throw InputError("The separator of a CSV file is \"" + options.separator +
-                       "\"; expected one character, tab or space.");
     separators =
         named == named_separators.end() ? options.separator : std::string(1, named->second);
+    if (separators.size() != 1 || std::string("\t;,| ").find(separators) == std::string::npos)
+      throw InputError("The separator of a CSV file is \"" + options.separator +
+                       "\"; expected tab, space, or one of , ; |.");
   }
   std::string decimals = ".,";
   if (!options.decimal.empty()) {
@@ -106,7 +106,6 @@ bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDi
   std::vector<float> values;
   for (const char separator : separators)
     for (const char decimal : decimals) {
-      if (separator == decimal) continue;
       const CsvDialect candidate{separator, decimal};
       std::map<std::size_t, std::size_t> values_by_width;
       for (std::size_t at = 0; at < text.size();) {

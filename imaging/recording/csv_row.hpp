@@ -22,7 +22,8 @@ struct CsvDialect {
 bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector<float>& values);
 
 /// The dialect in which most values of `text` stand in rows of one length, among tab, semicolon,
-/// comma and space with decimal point or comma; a separator or decimal sign in `options` is kept.
+/// comma, bar and space with decimal point or comma (with both commas where values are quoted); a
+/// separator or decimal sign in `options` is kept.
 /// @returns whether there is any row.
 /// @throws InputError if an option is none of the choices.
 bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDialect& dialect);

@@ -3,16 +3,14 @@
 // README.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "imaging/recording/formats.hpp"
+#include "imaging/recording/test_folder.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -35,34 +33,8 @@ double mean(const std::vector<float>& v) {
 float lowest(const std::vector<float>& v) { return *std::min_element(v.begin(), v.end()); }
 float highest(const std::vector<float>& v) { return *std::max_element(v.begin(), v.end()); }
 
-/// A folder of its own for each test, removed at the end.
-class Temporary {
- public:
-  Temporary()
-      : path_(fs::temp_directory_path() /
-              fmt::format("meltproof-{}-{}",
-                          testing::UnitTest::GetInstance()->current_test_info()->name(),
-                          ::getpid())) {
-    fs::create_directories(path_);
-  }
-  ~Temporary() { fs::remove_all(path_); }
-  /// A file with these bytes.
-  fs::path file(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
-
 std::string refusal(const fs::path& path) {
-  try {
-    open_recording(path);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { open_recording(path); });
 }
 
 TEST(Ptw, ReadsThePyradiSample) {
@@ -108,7 +80,7 @@ TEST(Ptw, SaysThatTheFramesClockContradictsTheHeader) {
 
 TEST(Ptw, KeepsTheWholeFramesOfATruncatedFileAndCountsTheLost) {
   NEED_SAMPLE(ptw);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / ptw);
   constexpr std::size_t stride = 1016 + 2 * 69 * 64;
   const auto cut = open_recording(folder.file("cut.ptw", whole.substr(0, 3476 + 41 * stride + 77)));
@@ -157,7 +129,7 @@ TEST(Flir, ReadsTheThermimageSampleWithTemperatures) {
 
 TEST(Flir, KeepsTheWholeFramesOfATruncatedFile) {
   NEED_SAMPLE(seq);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / seq);
   for (const std::size_t size :
        {whole.size() - 1, std::size_t{617180 + 100}, std::size_t{617180 + 2}}) {
@@ -216,14 +188,14 @@ TEST(Picture, ReadsTheMeltPoolFrameOfNistTopDown) {
 
 TEST(Picture, RefusesATruncatedPictureInsteadOfReadingZeros) {
   NEED_SAMPLE(bmp);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / bmp);
   EXPECT_NE(refusal(folder.file("cut.bmp", whole.substr(0, 9000))).find("ends before its last row"),
             std::string::npos);
 }
 
 TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
-  const Temporary folder;
+  const TestFolder folder;
   const std::string text = refusal(folder.file("notes.ptw", "The quick brown fox\nand more\n"));
   EXPECT_NE(text.find("its content is text (it begins with \"The quick brown fox\")"),
             std::string::npos)
@@ -241,7 +213,7 @@ TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
 
 TEST(OpenRecording, GoesByContentNotByName) {
   NEED_SAMPLE(bmp);
-  const Temporary folder;
+  const TestFolder folder;
   EXPECT_EQ(open_recording(folder.file("wrong.ptw", read_file(samples / bmp))).header().format,
             "picture");
 }
