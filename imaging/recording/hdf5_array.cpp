@@ -177,6 +177,20 @@ std::size_t count_unwritten(const Source& s, std::vector<bool>& missing) {
   return static_cast<std::size_t>(last - missing.rbegin());
 }
 
+/// Refuses frames that the file cannot hold, before memory is asked for.
+void check_frame_bytes(const Source& s) {
+  const Handle type{H5Dget_type(s.set.get()), &H5Tclose};
+  const auto most = static_cast<double>(fs::file_size(s.path)) * most_gain + smallest_chunk;
+  const double bytes = static_cast<double>(s.dims[s.axes.row]) *
+                       static_cast<double>(s.dims[s.axes.column]) *
+                       static_cast<double>(H5Tget_size(type.get()));
+  if (bytes > most)
+    throw InputError(fmt::format(
+        "{}: a frame of {} is said to have {:.3g} bytes, which the file cannot hold; it is "
+        "damaged.",
+        s.path.string(), s.name, bytes));
+}
+
 void read_frame(const Source& s, std::size_t index, std::vector<float>& stored) {
   std::vector<hsize_t> start(s.dims.size(), 0), count = s.dims;
   if (s.dims.size() == 3) {
@@ -226,6 +240,7 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
   header.height = s->dims[s->axes.row];
   header.width = s->dims[s->axes.column];
   check_frame_size(header);
+  check_frame_bytes(*s);
   std::vector<bool> missing;
   header.frames = 1;
   if (s->dims.size() == 3) {
