@@ -15,7 +15,7 @@ namespace meltproof::imaging {
 namespace {
 
 // Frames of a damaged file may be many and large; these are enough to meet every line of a reader.
-constexpr std::size_t most_pixels = 1 << 20;
+constexpr std::size_t most_pixels = 1 << 16;
 
 /// The short names and the formats that they stand for.
 const std::map<std::string, std::string>& short_names() {

@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include "base/error.hpp"
 
@@ -68,6 +69,38 @@ void read_parts(const ByteFile& file, std::endian order, Mat5Element& element) {
   element.data_length = data.length;
 }
 
+/// The first bytes of a compressed variable, as many as its description can have, decompressed.
+std::string inflate_head(const ByteFile& file, const Mat5Element& element) {
+  constexpr std::size_t most = 3 * tag_size + 8 + 4 * most_dimensions + longest_name + 64;
+  const std::string packed =
+      file.bytes(element.place,
+                 std::min({element.length, file.size() - element.place, std::uint64_t{2 * most}}));
+  std::string head(most, '\0');
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(head.data());
+  stream.avail_out = static_cast<uInt>(head.size());
+  if (inflateInit(&stream) == Z_OK) inflate(&stream, Z_SYNC_FLUSH);
+  head.resize(head.size() - stream.avail_out);
+  inflateEnd(&stream);
+  return head;
+}
+
+/// The same as read_parts() for a compressed variable: matio asks for as much memory as the
+/// description inside says.
+void read_compressed_parts(const ByteFile& file, std::endian order, Mat5Element& element) {
+  const ByteFile head(file.path(), inflate_head(file, element));
+  if (head.size() < tag_size) refuse(file, element.place, "cannot be decompressed");
+  const Tag tag = read_tag(head, 0, order);
+  if (tag.type != variable || tag.content != tag_size)
+    refuse(file, element.place, fmt::format("holds type {}, expected 14", tag.type));
+  Mat5Element inside{tag_size, tag.length, true, "", 0, 0};
+  read_parts(head, order, inside);
+  element.name = inside.name;
+  element.data_length = inside.data_length;
+}
+
 }  // namespace
 
 std::vector<Mat5Element> read_mat5_elements(const ByteFile& file) {
@@ -93,7 +126,10 @@ std::vector<Mat5Element> read_mat5_elements(const ByteFile& file) {
                         "",
                         0,
                         0};
-    if (!element.compressed) read_parts(file, order, element);
+    if (element.compressed)
+      read_compressed_parts(file, order, element);
+    else
+      read_parts(file, order, element);
     elements.push_back(element);
     at = std::min(file.size(), element.place + element.length);
   }

@@ -12,10 +12,12 @@ namespace meltproof::imaging {
 
 /// One variable of the file as its element says.
 struct Mat5Element {
-  std::uint64_t place = 0, length = 0;  ///< of its content, bytes
-  bool compressed = false;              ///< then the rest is unknown
+  std::uint64_t place = 0, length = 0;  ///< of its content in the file, bytes
+  bool compressed = false;
   std::string name;
-  std::uint64_t data_place = 0, data_length = 0;  ///< of the numbers, bytes; 0 if there are none
+  /// Of the numbers, bytes; 0 if there are none. If compressed: after decompression, and the place
+  /// means nothing in the file.
+  std::uint64_t data_place = 0, data_length = 0;
 };
 
 /// The variables that the file holds or has begun; only the last one may be cut off by the end of

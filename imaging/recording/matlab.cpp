@@ -109,27 +109,25 @@ std::size_t whole_frames(const Source& s, const ByteFile& file,
   for (int i = 0; i < v.rank; ++i) values *= static_cast<double>(v.dims[i]);
   const std::size_t frames = v.rank == 3 ? v.dims[s.axes.frame] : 1;
   const std::string name = v.name ? v.name : "";
-  const auto named = std::find_if(elements.begin(), elements.end(), [&](const Mat5Element& e) {
-    return !e.compressed && e.name == name;
-  });
-  if (named == elements.end()) {  // it is one of the compressed ones
-    const auto& last = elements.back();
-    if (last.compressed && last.length > file.size() - last.place)
-      refuse(s.path, "its compressed data are cut off; copy the file again from its source.");
-    std::uint64_t longest = 0;
-    for (const auto& e : elements)
-      if (e.compressed) longest = std::max(longest, e.length);
-    if (values > most_gain * static_cast<double>(longest))
-      refuse(s.path, fmt::format("the variable {} is said to hold {} values, which its {} bytes "
-                                 "cannot; the file is damaged.",
-                                 name, values, longest));
-    return frames;
-  }
+  const auto named =
+      std::find_if(elements.begin(), elements.end(), [&](const auto& e) { return e.name == name; });
   // MATLAB stores numbers in the smallest type that holds them, so their size is found by division.
-  const double size = static_cast<double>(named->data_length) / values;
+  const double size =
+      named == elements.end() ? 0 : static_cast<double>(named->data_length) / values;
   if (!(size == 1 || size == 2 || size == 4 || size == 8))
     refuse(s.path, fmt::format("the variable {} has {} values in {} bytes; the file is damaged.",
-                               name, values, named->data_length));
+                               name, values, size * values));
+  if (named->compressed) {
+    if (named->length > file.size() - named->place)
+      refuse(s.path, fmt::format("the compressed variable {} is cut off; copy the file again from "
+                                 "its source.",
+                                 name));
+    if (static_cast<double>(named->data_length) > most_gain * static_cast<double>(named->length))
+      refuse(s.path, fmt::format("the variable {} is said to hold {} bytes, which {} compressed "
+                                 "ones cannot; the file is damaged.",
+                                 name, named->data_length, named->length));
+    return frames;
+  }
   if (named->data_length <= file.size() - named->data_place) return frames;
   if (v.rank != 3 || s.axes.frame != 2)
     refuse(s.path, fmt::format("the variable {} is cut off, and every frame with it; copy the file "
