@@ -33,7 +33,13 @@ void decode_png(const ByteFile& file, const FlirBlock& block, std::size_t frame,
 
 void decode_jpeg_ls(const ByteFile& file, const FlirBlock& block, std::size_t frame,
                     std::vector<float>& counts) {
-  const std::string bytes = stored_pixels(file, block);
+  std::string bytes = stored_pixels(file, block);
+  // CharLS spends ten seconds on a stream that ends without its end mark, before it refuses it.
+  const auto end = bytes.rfind("\xFF\xD9");
+  if (end == std::string::npos)
+    refuse_flir_frame(file, frame, "holds a JPEG-LS that ends early; the file is damaged.");
+  bytes.resize(end + 2);
+  bytes.append(16, '\0');  // it looks ahead by words
   try {
     const charls::jpegls_decoder decoder(bytes, true);
     const auto& info = decoder.frame_info();
