@@ -2,22 +2,29 @@
 // The libFuzzer target of one reader, which the build names in MELTPROOF_FUZZ_READER.
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
-#include <sys/mman.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "imaging/fuzz/read_everything.hpp"
 
 namespace {
 
-/// A file in memory, made once: readers take paths, and a disk would be the slowest part.
+/// A file in memory, in a folder of its own: readers take paths and look for files beside them, and
+/// a disk would be the slowest part.
 class MemoryFile {
  public:
-  MemoryFile() : descriptor_(memfd_create("fuzz", 0)) {
+  MemoryFile() : folder_("/dev/shm/meltproof-fuzz-" + std::to_string(getpid())) {
+    std::filesystem::create_directory(folder_);
+    descriptor_ = open(path().c_str(), O_RDWR | O_CREAT, 0600);
     if (descriptor_ < 0) std::abort();
   }
-  std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+  ~MemoryFile() { std::filesystem::remove_all(folder_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::filesystem::path path() const { return folder_ / "input"; }
   void fill(const std::uint8_t* data, std::size_t size) const {
     if (ftruncate(descriptor_, 0) != 0 ||
         pwrite(descriptor_, data, size, 0) != static_cast<ssize_t>(size))
@@ -25,7 +32,8 @@ class MemoryFile {
   }
 
  private:
-  int descriptor_;
+  std::filesystem::path folder_;
+  int descriptor_ = -1;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/artifact.hpp"
 #include "base/atomic_file.hpp"
 #include "imaging/recording/synthetic_files.hpp"
 
@@ -47,6 +48,15 @@ int main(int argc, char** argv) {
   write_hdf5(folder / "hdf5/plain.h5", "frames", film, false);
   write_hdf5(folder / "hdf5/chunks.h5", "scan/frames", film, true);
   write_matlab_7(folder / "matlab_7/film.mat", film);
+  {
+    meltproof::ArtifactWriter own(folder / "hdf5/own.h5", "meltproof recording");
+    own.write("frames", film[0].counts, {1, 6, 9}, "count", "synthetic frames");
+    own.write("time", std::vector<double>{0.5}, {1}, "s", "time of each frame");
+    own.write("frame_rate", 9762.5, "Hz", "frame rate");
+    own.attribute("quantity", "counts");
+    own.attribute("synthetic", "a seed for fuzzing");
+    own.commit({});
+  }
   write("csv/comma.csv", csv(film[0], ',', '.') + "\n" + csv(film[1], ',', '.'));
   write("csv/preamble.asc",
         "[Settings]\nTempUnit=\xB0"

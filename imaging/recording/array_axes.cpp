@@ -17,15 +17,11 @@ ArrayAxes parse_array_axes(const std::string& letters) {
   return {letters.find('f'), letters.find('h'), letters.find('w')};
 }
 
-void to_row_major(const std::vector<float>& stored, bool columns_slow, std::size_t height,
-                  std::size_t width, std::vector<float>& into) {
-  if (!columns_slow) {
-    std::copy(stored.begin(), stored.end(), into.begin());
-    return;
-  }
+void transpose(const std::vector<float>& columns, std::size_t height, std::size_t width,
+               std::vector<float>& into) {
   for (std::size_t column = 0; column < width; ++column)
     for (std::size_t row = 0; row < height; ++row)
-      into[row * width + column] = stored[column * height + row];
+      into[row * width + column] = columns[column * height + row];
 }
 
 }  // namespace meltproof::imaging

@@ -18,10 +18,9 @@ struct ArrayAxes {
 /// @throws InputError if the letters are others.
 ArrayAxes parse_array_axes(const std::string& letters);
 
-/// A frame as it comes out of an array, with the axis of frames left out, brought into row-major
-/// order. `stored` has height * width values whose slower index is the row, or the column if
-/// `columns_slow`.
-void to_row_major(const std::vector<float>& stored, bool columns_slow, std::size_t height,
-                  std::size_t width, std::vector<float>& into);
+/// Brings a frame that is stored column after column into row-major order. Both have
+/// height * width values.
+void transpose(const std::vector<float>& columns, std::size_t height, std::size_t width,
+               std::vector<float>& into);
 
 }  // namespace meltproof::imaging

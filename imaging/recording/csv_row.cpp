@@ -130,15 +130,9 @@ std::string csv_unit(std::string_view preamble) {
                        [&](const char* word) { return text.find(word) != std::string::npos; });
   };
   if (says({"counts", "digital level", "[dl]", "(dl)"})) return "count";
-  // The degree sign is one byte in Latin-1 and ends in the same byte in UTF-8.
-  const bool celsius =
-      says({"\xB0"
-            "c",
-            "celsius", "degc", "deg c", "[c]", "(c)"});
-  const bool fahrenheit =
-      says({"\xB0"
-            "f",
-            "fahrenheit", "degf", "deg f", "[f]", "(f)"});
+  // The degree sign is the byte 260 (octal) in Latin-1, and ends in it in UTF-8.
+  const bool celsius = says({"\260c", "celsius", "degc", "deg c", "[c]", "(c)"});
+  const bool fahrenheit = says({"\260f", "fahrenheit", "degf", "deg f", "[f]", "(f)"});
   const bool kelvin = says({"kelvin", "[k]", "(k)", "unit=k", "unit: k"});
   if (int{celsius} + int{fahrenheit} + int{kelvin} != 1) return "";
   return celsius ? "degC" : fahrenheit ? "degF" : "K";

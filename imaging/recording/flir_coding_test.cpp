@@ -14,7 +14,6 @@
 namespace meltproof::imaging {
 namespace {
 
-using synthetic::FlirBlock;
 using synthetic::Pixels;
 
 std::vector<float> as_float(const synthetic::Picture& p) {

@@ -82,7 +82,8 @@ std::string describe(std::string_view first_bytes) {
   if (extension == ".ats")
     throw InputError(path.string() +
                      ": the ATS format is closed and cannot be read; export the recording from the "
-                     "camera's software as a 16-bit TIFF stack.");
+                     "camera's software as SFMOV with its .inc file, as a 16-bit TIFF stack or as "
+                     "CSV.");
   for (const auto& format : formats())
     if (std::find(format.extensions.begin(), format.extensions.end(), extension) !=
         format.extensions.end())

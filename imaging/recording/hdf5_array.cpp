@@ -260,9 +260,13 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
               throw InputError(fmt::format(
                   "{}: frame {} of {} was never written to the file; cut the recording there.",
                   s->path.string(), index, s->name));
-            std::vector<float> stored(frame.values.size());
-            read_frame(*s, index, stored);
-            to_row_major(stored, s->axes.column < s->axes.row, height, width, frame.values);
+            if (s->axes.row < s->axes.column) {
+              read_frame(*s, index, frame.values);
+            } else {
+              std::vector<float> columns(frame.values.size());
+              read_frame(*s, index, columns);
+              transpose(columns, height, width, frame.values);
+            }
             scale.apply(frame.values);
           }};
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "imaging/recording/matlab.hpp"
 #include "imaging/recording/ptw.hpp"
 #include "imaging/recording/sfmov.hpp"
 #include "imaging/recording/synthetic_files.hpp"
@@ -70,6 +71,32 @@ TEST(LargeRecording, PtwOf10GibIsReadInConstantMemory) {
   fs::resize_file(path, 1024 + frames * stride - 2);
   std::ofstream(path, std::ios::binary | std::ios::app) << "\x39\x30";
   expect_constant_memory(open_ptw(path), frames, 12345);
+}
+
+TEST(LargeRecording, Matlab5Of2GibIsReadInPortions) {
+  const TestFolder folder;
+  const auto picture = synthetic::scene(640, 512, 0);
+  std::string head = synthetic::mat5({picture}, false, false, false);
+  const std::size_t data = 4 * 640 * 512, tag = head.size() - data - 8;
+  const std::uint32_t frames = 1600;  // 2.1 GB of single precision
+  const auto put = [&](std::size_t at, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) head[at + i] = static_cast<char>(value >> (8 * i));
+  };
+  const std::size_t variable = head.find("frames") - 56;  // tag 8, flags 16, dimensions 24, tag 8
+  ASSERT_EQ(head[variable], 14);
+  put(variable + 4, static_cast<std::uint32_t>(head.size() - variable - 8 + data * (frames - 1)));
+  put(variable + 8 + 16 + 8 + 8, frames);
+  put(tag + 4, static_cast<std::uint32_t>(data) * frames);
+  const auto path = folder.file("large.mat", head);
+  fs::resize_file(path, head.size() + std::uintmax_t{data} * (frames - 1) - 4);
+  std::ofstream(path, std::ios::binary | std::ios::app) << std::string("\0\xe4@F", 4);  // 12345
+  if (!forget_peak()) GTEST_SKIP() << "the kernel does not tell how much memory was used";
+  const std::size_t before = peak_memory();
+  const auto recording = open_matlab_5(path);
+  ASSERT_EQ(recording.header().frames, frames);
+  EXPECT_EQ(recording.frame(0).values[5], picture.counts[5]);
+  EXPECT_EQ(recording.frame(frames - 1).values.back(), 12345);
+  EXPECT_LT(peak_memory() - before, 128u << 20);
 }
 
 }  // namespace

@@ -251,10 +251,12 @@ Recording open_matlab_5(const fs::path& path, const ReadOptions& options) {
               read_portion(*s, index, frame.values.size());
             const auto begin = s->portion.begin() + static_cast<std::ptrdiff_t>(
                                                         (index - s->first) * frame.values.size());
-            const std::vector<float> stored(
-                begin, begin + static_cast<std::ptrdiff_t>(frame.values.size()));
-            // MATLAB's first index is the fastest, so the column is the slower one if it is later.
-            to_row_major(stored, s->axes.column > s->axes.row, height, width, frame.values);
+            const auto end = begin + static_cast<std::ptrdiff_t>(frame.values.size());
+            // MATLAB's first index is the fastest: the column is the slower one if it is later.
+            if (s->axes.column > s->axes.row)
+              transpose({begin, end}, height, width, frame.values);
+            else
+              std::copy(begin, end, frame.values.begin());
             scale.apply(frame.values);
           }};
 }

@@ -79,6 +79,28 @@ TEST(Hdf5Array, CountsFramesThatWereNeverWritten) {
   EXPECT_EQ(recording.header().frames_lost, 3u);
 }
 
+TEST(Hdf5Array, PassesOverAListOfTextsWhereOneIsExpected) {
+  const TestFolder folder;
+  const auto path = folder.path() / "a.h5";
+  synthetic::write_hdf5(path, "frames", film(), false);
+  {
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hsize_t many = 1000;
+    const hid_t space = H5Screate_simple(1, &many, nullptr), type = H5Tcopy(H5T_C_S1);
+    const hid_t set = H5Dopen2(file, "frames", H5P_DEFAULT);
+    for (const auto& [object, name] : {std::pair{file, "kind"}, {set, "units"}}) {
+      const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+      H5Awrite(attribute, type, std::string(many, 'K').data());
+      H5Aclose(attribute);
+    }
+    H5Dclose(set);
+    H5Tclose(type);
+    H5Sclose(space);
+    H5Fclose(file);
+  }
+  expect_film(open_recording(path));
+}
+
 TEST(Matlab, ReadsVersion7WithItsAxesTurnedRound) {
   const TestFolder folder;
   const auto path = folder.path() / "a.mat";

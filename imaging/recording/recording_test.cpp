@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.hpp"
 #include "imaging/recording/formats.hpp"
+#include "imaging/recording/synthetic_files.hpp"
 #include "imaging/recording/test_folder.hpp"
 
 namespace meltproof::imaging {
@@ -192,6 +193,24 @@ TEST(Picture, RefusesATruncatedPictureInsteadOfReadingZeros) {
   const std::string whole = read_file(samples / bmp);
   EXPECT_NE(refusal(folder.file("cut.bmp", whole.substr(0, 9000))).find("ends before its last row"),
             std::string::npos);
+}
+
+TEST(Picture, RefusesWhatOpenCvWouldFillWithZeros) {
+  const TestFolder folder;
+  const auto picture = synthetic::scene(20, 10, 0);
+  const std::string deflated = synthetic::png(picture), rows = synthetic::bmp(picture);
+  ASSERT_EQ(refusal(folder.file("a.png", deflated)), "");
+  ASSERT_EQ(refusal(folder.file("a.bmp", rows)), "");
+  for (std::size_t at = 8; at < deflated.size(); ++at) {  // every byte has a checksum
+    std::string bad = deflated;
+    bad[at] = static_cast<char>(bad[at] ^ 1);
+    EXPECT_NE(refusal(folder.file("b.png", bad)), "") << at;
+  }
+  std::string packed = rows, endless = rows;
+  packed[30] = 1;
+  EXPECT_TRUE(says(refusal(folder.file("c.bmp", packed)), "run-length"));
+  endless[24] = 1;  // 65536 rows more
+  EXPECT_TRUE(says(refusal(folder.file("d.bmp", endless)), "ends before its last row"));
 }
 
 TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
