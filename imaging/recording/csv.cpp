@@ -68,7 +68,7 @@ std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& 
     }
     if (last == blocks.size() || i > last) {  // begun behind the last whole frame
       header.frames_lost = std::max<std::size_t>(header.frames_lost, 1);
-    } else if (block.width == width && !frames.empty()) {
+    } else if (block.width == width) {
       throw InputError(fmt::format(
           "{}: the {} rows from line {} on are not as many as the {} of the other frames; repair "
           "the line that interrupts them, or say how many rows a frame has.",

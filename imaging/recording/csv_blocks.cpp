@@ -54,15 +54,27 @@ std::vector<CsvBlock> find_csv_blocks(const ByteFile& file, const CsvDialect& di
                                       std::size_t skip, std::string& preamble) {
   std::vector<CsvBlock> blocks;
   std::vector<float> values;
-  bool open = false;  // whether the last block may go on
+  bool open = false;           // whether the last block may go on
+  std::size_t odd_fields = 0;  // of the line before, if it mixes numbers and words
   LineReader reader(file, 0);
   std::string_view line;
+  const auto refuse = [&](std::size_t number) {
+    throw InputError(fmt::format(
+        "{}: line {} has as many fields as the rows of a frame beside it, but one of them is no "
+        "number; repair it, or say how many lines of preamble there are.",
+        file.path().string(), number));
+  };
   for (std::size_t number = 1; reader.next(line); ++number) {
-    if (number <= skip || !parse_csv_row(line, dialect, values)) {
+    const CsvLine kind = number <= skip ? CsvLine::other : read_csv_line(line, dialect, values);
+    if (kind != CsvLine::row) {
+      if (kind == CsvLine::mixed && open && values.size() == blocks.back().width) refuse(number);
+      odd_fields = kind == CsvLine::mixed ? values.size() : 0;
       open = false;
       if (preamble.size() + line.size() < longest_preamble) preamble.append(line).append("\n");
       continue;
     }
+    if (odd_fields == values.size()) refuse(number - 1);
+    odd_fields = 0;
     if (!open || blocks.back().width != values.size())
       blocks.push_back({reader.place(), number, 0, values.size()});
     ++blocks.back().rows;

@@ -36,8 +36,9 @@ class LineReader {
   std::uint64_t buffer_place_ = 0;
 };
 
-/// Every block of the file in order, `skip` lines left out at its beginning. The text in front of
-/// the largest block is appended to `preamble`, up to 64 KiB.
+/// Every block of the file in order, `skip` lines left out at its beginning. The lines that are no
+/// rows are appended to `preamble`, up to 64 KiB.
+/// @throws InputError if a line beside a row is like it but for a word: a row would be lost.
 std::vector<CsvBlock> find_csv_blocks(const ByteFile& file, const CsvDialect& dialect,
                                       std::size_t skip, std::string& preamble);
 

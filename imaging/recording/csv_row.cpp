@@ -68,21 +68,28 @@ const std::map<std::string, char> named_separators = {
 }  // namespace
 
 bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector<float>& values) {
+  return read_csv_line(line, dialect, values) == CsvLine::row;
+}
+
+CsvLine read_csv_line(std::string_view line, const CsvDialect& dialect,
+                      std::vector<float>& values) {
   values.clear();
+  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // UTF-8's mark
   if (line.ends_with('\r')) line.remove_suffix(1);
   if (dialect.separator != '\t') line = trimmed(line);
-  bool any = false;
+  bool number = false, text = false;
   for (std::size_t at = 0; at < line.size();) {
     const std::size_t end = field_end(line, at, dialect.separator);
     float value = 0;
     const Field field = parse_field(line.substr(at, end - at), dialect.decimal, value);
-    if (field == Field::text) return false;
-    any |= field == Field::number;
+    number |= field == Field::number;
+    text |= field == Field::text;
     values.push_back(value);
     at = end + 1;
     if (dialect.separator == ' ') at = std::min(line.find_first_not_of(' ', at), line.size());
   }
-  return any && values.size() >= 2;
+  if (!number || values.size() < 2) return CsvLine::other;
+  return text ? CsvLine::mixed : CsvLine::row;
 }
 
 bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDialect& dialect) {

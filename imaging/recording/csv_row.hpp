@@ -16,9 +16,14 @@ struct CsvDialect {
   char decimal = '.';
 };
 
-/// Appends nothing and is false unless `line` is a row of at least two values of which one is a
-/// number: then `values` holds them. An empty field, a dash or NaN between numbers is NaN. A
-/// separator at the end of the line is allowed; with the separator "space" several count as one.
+/// What a line of text is: a row of at least two values of which one is a number and none a word; a
+/// mixture of numbers and words; or something else.
+enum class CsvLine { row, mixed, other };
+/// Reads a line; `values` then has one entry a field. An empty field, a dash, NaN and a word are
+/// NaN. A separator at the end of the line is allowed; with the separator "space" several count as
+/// one.
+CsvLine read_csv_line(std::string_view line, const CsvDialect& dialect, std::vector<float>& values);
+/// Whether the line is a row, which `values` then holds.
 bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector<float>& values);
 
 /// The dialect in which most values of `text` stand in rows of one length, among tab, semicolon,

@@ -31,6 +31,10 @@ TEST(Csv, FindsSeparatorAndDecimalSign) {
   EXPECT_EQ(read(folder, "20.1  20.2 20.3 \n 21.1 21.2  21.3\n"), two_by_three);
   EXPECT_EQ(read(folder, "20.1, 20.2, 20.3,\n21.1, 21.2, 21.3,\n"), two_by_three);
   EXPECT_EQ(read(folder, "\"20,1\",\"20,2\",\"20,3\"\n\"21,1\",\"21,2\",\"21,3\"\n"), two_by_three);
+  EXPECT_EQ(read(folder,
+                 "\xEF\xBB\xBF"
+                 "20.1;20.2;20.3\n21.1;21.2;21.3\n"),
+            two_by_three);
   EXPECT_EQ(read(folder, "2.01e1;+20.2;20.3\n21.1;21.2;21.3\n"), two_by_three);
 }
 
@@ -113,6 +117,12 @@ TEST(Csv, KeepsWholeFramesAndNamesTheLineThatInterrupts) {
   EXPECT_EQ(cut.header().frames_lost, 1u);
   const auto torn = folder.file("b.csv", frame + "\n1;2;3;4;5;6\noops;\n" + frame + "\n" + frame);
   EXPECT_TRUE(says(refusal_of([&] { open_csv(torn); }), "line 6"));
+  // No row is lost in silence: neither one with a word in it, nor those in front of it.
+  for (const std::string& bad :
+       {"1;2;x;4;5;6\n" + frame, frame + "1;2;x;4;5;6\n", "1;2;3;4;5;6\nFrame\n" + frame}) {
+    const auto path = folder.file("c.csv", bad);
+    EXPECT_TRUE(says(refusal_of([&] { open_csv(path); }), "repair")) << bad;
+  }
 }
 
 TEST(Csv, MarksMissingValuesAsDead) {

@@ -60,7 +60,11 @@ std::string lower_extension(const std::filesystem::path& path) {
 std::string all_extensions() {
   std::string list;
   for (const auto& format : formats())
-    for (const auto& extension : format.extensions) list += (list.empty() ? "" : ", ") + extension;
+    for (const auto& extension : format.extensions) {
+      if (list.find(extension) != std::string::npos) continue;  // two formats share .mat
+      list += list.empty() ? "" : ", ";
+      list += extension;
+    }
   return list;
 }
 
