@@ -73,7 +73,9 @@ Frames find_frames(const ByteFile& file) {
         return number_at<std::uint32_t>(entry, offset, little);
       };
       const Place target{u32(12), u32(16)};
-      if (u32(0) == chain_entry && target.start != 0) open.push_back({target.start, 2});
+      // A sequence that ended as it should may point to the end of the file.
+      if (u32(0) == chain_entry && target.start != 0 && target.start != file.size())
+        open.push_back({target.start, 2});
       if (u32(0) != frame_entry) continue;
       if (target.start > file.size() || target.length > file.size() - target.start)
         ++frames.lost;

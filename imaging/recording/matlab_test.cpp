@@ -124,6 +124,23 @@ TEST(Matlab, ReadsVersion5HoweverItIsStored) {
       }
 }
 
+TEST(Matlab, ReadsWhatScipyAndH5pyHaveWritten) {
+  // Two frames of 4 x 3 pixels with the value 100 frame + 10 row + column, compressed.
+  const auto mat = open_recording("imaging/fuzz/corpus/matlab_5/scipy.mat");
+  const auto h5 = open_recording("imaging/fuzz/corpus/hdf5/h5py.h5");  // in Celsius
+  for (const auto* recording : {&mat, &h5}) {
+    ASSERT_EQ(recording->header().frames, 2u);
+    ASSERT_EQ(recording->header().width, 4u);
+    ASSERT_EQ(recording->header().height, 3u);
+    for (std::size_t f = 0; f < 2; ++f)
+      for (std::size_t i = 0; i < 12; ++i)
+        EXPECT_FLOAT_EQ(
+            recording->frame(f).values[i],
+            static_cast<float>(100 * f + 10 * (i / 4) + i % 4) + (recording == &h5 ? 273.15F : 0));
+  }
+  EXPECT_EQ(h5.header().unit, "K");
+}
+
 TEST(Matlab, KeepsTheWholeFramesOfAVersion5ThatIsCutOff) {
   const TestFolder folder;
   const std::string whole = synthetic::mat5(film(), false);
