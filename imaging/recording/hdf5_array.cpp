@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -125,7 +127,7 @@ Handle open_set(hid_t file, const fs::path& path, const std::string& name) {
   for (int i = 0; i < rank; ++i)
     bytes *= static_cast<double>(chunk.at(static_cast<std::size_t>(i)));
   const auto size = static_cast<double>(fs::file_size(path));
-  if (bytes > std::max(size * most_gain, static_cast<double>(smallest_chunk)))
+  if (!(bytes > 0) || bytes > std::max(size * most_gain, static_cast<double>(smallest_chunk)))
     throw InputError(fmt::format(
         "{}: the data set {} is said to come in pieces of {:.3g} bytes, which a file of {:.3g} "
         "bytes cannot hold; the file is damaged.",
@@ -136,45 +138,53 @@ Handle open_set(hid_t file, const fs::path& path, const std::string& name) {
   return Handle{H5Dopen2(file, name.c_str(), access.get()), &H5Dclose};
 }
 
-/// How many frames at the end have no pixels in the file: a recording that was broken off is as
-/// long as announced, and HDF5 gives zeros for what was never written. Also fills the frames of
-/// `missing` that lie between others.
-std::size_t count_unwritten(const Source& s, std::vector<bool>& missing) {
+/// Which frames are in the file: a recording that was broken off is as long as announced, and HDF5
+/// gives zeros for what was never written.
+struct Written {
+  bool all = true;
+  hsize_t layer_frames = 1;  // frames that share chunks
+  std::set<hsize_t> layers;  // all of whose chunks are there
+  bool has(hsize_t frame) const { return all || layers.contains(frame / layer_frames); }
+};
+
+Written find_written(const Source& s) {
   const Handle layout{H5Dget_create_plist(s.set.get()), &H5Pclose};
   H5D_space_status_t status = H5D_SPACE_STATUS_ALLOCATED;
   H5Dget_space_status(s.set.get(), &status);
-  const std::size_t frame_axis = s.axes.frame;
-  const hsize_t frames = s.dims[frame_axis];
-  if (status == H5D_SPACE_STATUS_NOT_ALLOCATED) return frames;
-  if (H5Pget_layout(layout.get()) != H5D_CHUNKED) return 0;
+  if (status == H5D_SPACE_STATUS_NOT_ALLOCATED) return {false, 1, {}};
+  if (H5Pget_layout(layout.get()) != H5D_CHUNKED) return {};
   std::vector<hsize_t> chunk(s.dims.size());
   H5Pget_chunk(layout.get(), static_cast<int>(chunk.size()), chunk.data());
-  double expected = 1;
-  for (std::size_t i = 0; i < chunk.size(); ++i)
-    expected *= static_cast<double>((s.dims[i] + chunk[i] - 1) / chunk[i]);
+  hsize_t layer_chunks = 1;  // at most as many as a frame has pixels
+  for (const std::size_t axis : {s.axes.row, s.axes.column})
+    layer_chunks *= s.dims[axis] / chunk[axis] + (s.dims[axis] % chunk[axis] != 0 ? 1 : 0);
+  Written written{false, chunk[s.axes.frame], {}};
   hsize_t stored = 0;
   const Handle all{H5Dget_space(s.set.get()), &H5Sclose};
   H5Dget_num_chunks(s.set.get(), all.get(), &stored);
-  if (static_cast<double>(stored) >= expected) return 0;
-  missing.assign(frames, true);
-  // A layer of chunks is written if it has as many as it needs.
-  const double layers = static_cast<double>((frames + chunk[frame_axis] - 1) / chunk[frame_axis]);
-  std::vector<hsize_t> layer_chunks(static_cast<std::size_t>(layers), 0);
+  const hsize_t layers = (s.dims[s.axes.frame] - 1) / written.layer_frames + 1;
+  if (stored / layer_chunks >= layers) return {};
+  std::map<hsize_t, hsize_t> found;  // chunks by layer
   std::vector<hsize_t> place(chunk.size());
   for (hsize_t i = 0; i < stored; ++i) {
     unsigned filters = 0;
     haddr_t address = HADDR_UNDEF;
     hsize_t bytes = 0;
-    if (H5Dget_chunk_info(s.set.get(), all.get(), i, place.data(), &filters, &address, &bytes) >=
-            0 &&
-        place[frame_axis] < frames)
-      ++layer_chunks[place[frame_axis] / chunk[frame_axis]];
+    if (H5Dget_chunk_info(s.set.get(), all.get(), i, place.data(), &filters, &address, &bytes) < 0)
+      continue;
+    const hsize_t layer = place[s.axes.frame] / written.layer_frames;
+    if (layer < layers && ++found[layer] == layer_chunks) written.layers.insert(layer);
   }
-  for (hsize_t i = 0; i < frames; ++i)
-    if (static_cast<double>(layer_chunks[i / chunk[frame_axis]]) >= expected / layers)
-      missing[i] = false;
-  const auto last = std::find(missing.rbegin(), missing.rend(), false);
-  return static_cast<std::size_t>(last - missing.rbegin());
+  return written;
+}
+
+/// The number of frames up to the last that is in the file.
+std::size_t count_frames(const Source& s, const Written& written) {
+  const hsize_t announced = s.dims[s.axes.frame];
+  if (written.all) return announced;
+  if (written.layers.empty()) return 0;
+  const hsize_t last = *written.layers.rbegin();
+  return last >= announced / written.layer_frames ? announced : (last + 1) * written.layer_frames;
 }
 
 /// Refuses frames that the file cannot hold, before memory is asked for.
@@ -241,11 +251,12 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
   header.width = s->dims[s->axes.column];
   check_frame_size(header);
   check_frame_bytes(*s);
-  std::vector<bool> missing;
+  Written written;
   header.frames = 1;
   if (s->dims.size() == 3) {
-    header.frames_lost = count_unwritten(*s, missing);
-    header.frames = s->dims[s->axes.frame] - header.frames_lost;
+    written = find_written(*s);
+    header.frames = count_frames(*s, written);
+    header.frames_lost = s->dims[s->axes.frame] - header.frames;
   }
   header.notes.push_back(fmt::format(
       "The frames are the array {} of shape {}, taken as {} (frame f, row h, column w); if the "
@@ -254,9 +265,9 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
   std::string unit = read_text_attribute(s->set.get(), "units");
   if (unit.empty()) unit = read_text_attribute(s->set.get(), "unit");
   const SignalScale scale = describe_signal(unit, options.unit, header);
-  return {header, [s, missing, scale, height = header.height, width = header.width](
+  return {header, [s, written, scale, height = header.height, width = header.width](
                       std::size_t index, Frame& frame) {
-            if (index < missing.size() && missing[index])
+            if (!written.has(index))
               throw InputError(fmt::format(
                   "{}: frame {} of {} was never written to the file; cut the recording there.",
                   s->path.string(), index, s->name));

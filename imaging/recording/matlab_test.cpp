@@ -53,10 +53,9 @@ TEST(Hdf5Array, FindsTheOnlyStackAndTakesANamedOne) {
 TEST(Hdf5Array, CountsFramesThatWereNeverWritten) {
   const TestFolder folder;
   const auto path = folder.path() / "a.h5";
-  synthetic::write_hdf5(path, "frames", film(), true);
-  {  // a recording of 8 frames that was broken off after 5
+  for (const hsize_t announced : {hsize_t{8}, hsize_t{1} << 50}) {  // broken off after 5
     const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    const hsize_t dims[3] = {8, 6, 9}, chunk[3] = {1, 6, 9}, start[3] = {0, 0, 0},
+    const hsize_t dims[3] = {announced, 6, 9}, chunk[3] = {1, 6, 9}, start[3] = {0, 0, 0},
                   count[3] = {5, 6, 9};
     const hid_t space = H5Screate_simple(3, dims, nullptr),
                 memory = H5Screate_simple(3, count, nullptr);
@@ -73,10 +72,10 @@ TEST(Hdf5Array, CountsFramesThatWereNeverWritten) {
     H5Sclose(memory);
     H5Sclose(space);
     H5Fclose(file);
+    const auto recording = open_recording(path);
+    expect_film(recording);
+    EXPECT_EQ(recording.header().frames_lost, announced - 5);
   }
-  const auto recording = open_recording(path);
-  expect_film(recording);
-  EXPECT_EQ(recording.header().frames_lost, 3u);
 }
 
 TEST(Hdf5Array, PassesOverAListOfTextsWhereOneIsExpected) {
