@@ -35,10 +35,10 @@ Size bmp_size(const std::filesystem::path& path, const std::string& bytes) {
   const auto height = std::abs(std::int64_t{number_at<std::int32_t>(bytes, 22, little)});
   const auto bits = std::uint64_t{number_at<std::uint16_t>(bytes, 28, little)};
   const auto packed = number_at<std::uint32_t>(bytes, 30, little);
-  if (packed == 1 || packed == 2)
-    throw InputError(path.string() +
-                     ": the BMP is run-length coded, where pixels may be left out; save it "
-                     "uncompressed.");
+  if (packed != 0 && packed != 3)  // 3: colours by masks, of which the channels are looked at later
+    throw InputError(path.string() + ": the BMP is compressed (run-length coded, kind " +
+                     std::to_string(packed) +
+                     "), where pixels may be left out; save it uncompressed.");
   const auto w = static_cast<std::uint64_t>(std::max<std::int64_t>(0, width));
   const auto h = static_cast<std::uint64_t>(height);
   const std::uint64_t row = (w * bits + 31) / 32 * 4;
@@ -50,7 +50,7 @@ Size bmp_size(const std::filesystem::path& path, const std::string& bytes) {
 /// as a damaged size says, so both are checked here.
 void check_complete(const std::filesystem::path& path, const std::string& bytes) {
   // DEFLATE gains a factor of 1032 at most, and PNG has pixels of one bit.
-  constexpr std::uint64_t most_pixels_per_byte = 8 * 1032;
+  constexpr std::uint64_t most_pixels_per_byte = 8256;
   Size size;
   if (bytes.starts_with("BM"))
     size = bmp_size(path, bytes);
