@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
 #include "base/provenance.hpp"
 #include "imaging/recording/bytes.hpp"
@@ -91,9 +93,10 @@ std::string describe(std::string_view first_bytes) {
   for (const auto& format : formats())
     if (std::find(format.extensions.begin(), format.extensions.end(), extension) !=
         format.extensions.end())
-      throw InputError(found + ", but a file named " + extension + " should begin with " +
-                       format.beginning + " (" + format.name +
-                       "); give the recording as the camera wrote it.");
+      throw InputError(fmt::format(
+          "{}, but a file named {} should begin with {} ({}); give the recording as the camera "
+          "wrote it.",
+          found, extension, format.beginning, format.name));
   throw InputError(found + ", which is no recording that can be read; give one of " +
                    all_extensions() + ".");
 }
