@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the writer and the reader of artifacts share of HDF5; only they include this.
+// What writer and reader of artifacts share of HDF5 with readers of other HDF5 files; nobody else
+// includes this.
 #pragma once
 
 #include <algorithm>
@@ -105,7 +106,10 @@ inline std::string read_text_attribute(hid_t object, const std::string& name) {
   }
   const Handle attribute{H5Aopen(object, name.c_str(), H5P_DEFAULT), &H5Aclose};
   const Handle type{H5Aget_type(attribute.get()), &H5Tclose};
-  if (H5Tget_class(type.get()) != H5T_STRING) {
+  const Handle space{H5Aget_space(attribute.get()), &H5Sclose};
+  // A list of texts would be read beyond the memory of one, and no text is longer than a MiB.
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1 ||
+      H5Tget_size(type.get()) > std::size_t{1} << 20) {
     return "";
   }
   if (H5Tis_variable_str(type.get()) > 0) {

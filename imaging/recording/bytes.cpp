@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "imaging/recording/bytes.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -17,9 +19,18 @@ ByteFile::ByteFile(const std::filesystem::path& path) : path_(path) {
     throw InputError(path.string() + ": the file cannot be read; check its permissions.");
 }
 
+ByteFile::ByteFile(std::filesystem::path path, std::string content)
+    : path_(std::move(path)),
+      size_(content.size()),
+      content_(std::make_shared<const std::string>(std::move(content))) {}
+
 void ByteFile::read(std::uint64_t offset, std::uint64_t count, char* into) const {
   // Written so that no sum can overflow: offsets come from files that may be damaged.
   if (offset <= size_ && count <= size_ - offset) {
+    if (content_) {
+      std::copy_n(content_->data() + offset, count, into);
+      return;
+    }
     stream_->clear();
     stream_->seekg(static_cast<std::streamoff>(offset));
     stream_->read(into, static_cast<std::streamsize>(count));
@@ -35,6 +46,10 @@ std::string ByteFile::bytes(std::uint64_t offset, std::uint64_t count) const {
   std::string result(count, '\0');
   read(offset, count, result.data());
   return result;
+}
+
+std::string ByteFile::beginning(std::uint64_t most) const {
+  return bytes(0, std::min(most, size_));
 }
 
 double decimal(float value) {

@@ -19,17 +19,22 @@ class ByteFile {
  public:
   /// @throws InputError if the file is missing or unreadable.
   explicit ByteFile(const std::filesystem::path& path);
+  /// A file within the file `path`, taken out of it: `content` is all of its bytes.
+  ByteFile(std::filesystem::path path, std::string content);
   std::uint64_t size() const { return size_; }
   const std::filesystem::path& path() const { return path_; }
   /// `count` bytes from `offset` on. @throws InputError if the file ends before.
   std::string bytes(std::uint64_t offset, std::uint64_t count) const;
-  /// The same into memory of the caller.
+  /// The first `most` bytes, or all if there are fewer: what a format is recognised by.
+  std::string beginning(std::uint64_t most) const;
+  /// The same as bytes() into memory of the caller.
   void read(std::uint64_t offset, std::uint64_t count, char* into) const;
 
  private:
   std::filesystem::path path_;
   std::uint64_t size_ = 0;
   std::shared_ptr<std::ifstream> stream_;
+  std::shared_ptr<const std::string> content_;  // instead of the stream
 };
 
 /// The number at `offset` of `bytes`, stored in byte order `order`. The caller has checked that

@@ -31,6 +31,18 @@ SignalQuantity parse_signal_quantity(const std::string& name) {
       "The quantity of a recording is \"{}\"; expected counts, temperature or radiance.", name));
 }
 
+void check_frame_size(const RecordingHeader& header) {
+  if (header.width == 0 || header.height == 0)
+    throw InputError(fmt::format("{}: the frames have no pixels ({} x {}).", header.path.string(),
+                                 header.width, header.height));
+  constexpr std::size_t most = 100'000'000;  // pixels: more than any camera has
+  if (header.width > most || header.height > most / header.width)
+    throw InputError(fmt::format(
+        "{}: the frames are said to have {} x {} pixels, more than any camera has; the file is "
+        "damaged.",
+        header.path.string(), header.width, header.height));
+}
+
 Recording::Recording(RecordingHeader header, ReadFrame read)
     : header_(std::move(header)), read_(std::move(read)) {
   if (header_.frames == 0)
@@ -39,15 +51,7 @@ Recording::Recording(RecordingHeader header, ReadFrame read)
                     "source or record "
                     "anew.",
                     header_.path.string()));
-  if (header_.width == 0 || header_.height == 0)
-    throw InputError(fmt::format("{}: the frames have no pixels ({} x {}).", header_.path.string(),
-                                 header_.width, header_.height));
-  constexpr std::size_t most = 100'000'000;  // pixels: more than any camera has
-  if (header_.width > most || header_.height > most / header_.width)
-    throw InputError(fmt::format(
-        "{}: the frames are said to have {} x {} pixels, more than any camera has; the file is "
-        "damaged.",
-        header_.path.string(), header_.width, header_.height));
+  check_frame_size(header_);
 }
 
 void Recording::read(std::size_t index, Frame& frame) const {

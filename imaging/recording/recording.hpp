@@ -56,7 +56,13 @@ struct RecordingHeader {
   std::map<std::string, double> calibration;  ///< other constants of the file, by name with unit
   std::string synthetic;           ///< how a synthetic recording was made; empty: measured
   std::vector<std::string> notes;  ///< sentences that a user should read
+  /// Other files that were read for this one: a calibration beside it, the frames of a folder.
+  std::vector<std::filesystem::path> companions;
 };
+
+/// @throws InputError if the frames have no pixels, or more than any camera has. Recording checks
+/// it too; a reader that must ask for memory before it has a Recording calls it first.
+void check_frame_size(const RecordingHeader& header);
 
 /// A recording. Only the frame that is asked for is read, so the file may be larger than memory.
 class Recording {

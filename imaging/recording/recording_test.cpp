@@ -3,16 +3,15 @@
 // README.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.hpp"
-#include "base/error.hpp"
 #include "imaging/recording/formats.hpp"
+#include "imaging/recording/synthetic_files.hpp"
+#include "imaging/recording/test_folder.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -35,34 +34,8 @@ double mean(const std::vector<float>& v) {
 float lowest(const std::vector<float>& v) { return *std::min_element(v.begin(), v.end()); }
 float highest(const std::vector<float>& v) { return *std::max_element(v.begin(), v.end()); }
 
-/// A folder of its own for each test, removed at the end.
-class Temporary {
- public:
-  Temporary()
-      : path_(fs::temp_directory_path() /
-              fmt::format("meltproof-{}-{}",
-                          testing::UnitTest::GetInstance()->current_test_info()->name(),
-                          ::getpid())) {
-    fs::create_directories(path_);
-  }
-  ~Temporary() { fs::remove_all(path_); }
-  /// A file with these bytes.
-  fs::path file(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
-
 std::string refusal(const fs::path& path) {
-  try {
-    open_recording(path);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { open_recording(path); });
 }
 
 TEST(Ptw, ReadsThePyradiSample) {
@@ -108,7 +81,7 @@ TEST(Ptw, SaysThatTheFramesClockContradictsTheHeader) {
 
 TEST(Ptw, KeepsTheWholeFramesOfATruncatedFileAndCountsTheLost) {
   NEED_SAMPLE(ptw);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / ptw);
   constexpr std::size_t stride = 1016 + 2 * 69 * 64;
   const auto cut = open_recording(folder.file("cut.ptw", whole.substr(0, 3476 + 41 * stride + 77)));
@@ -157,7 +130,7 @@ TEST(Flir, ReadsTheThermimageSampleWithTemperatures) {
 
 TEST(Flir, KeepsTheWholeFramesOfATruncatedFile) {
   NEED_SAMPLE(seq);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / seq);
   for (const std::size_t size :
        {whole.size() - 1, std::size_t{617180 + 100}, std::size_t{617180 + 2}}) {
@@ -216,14 +189,32 @@ TEST(Picture, ReadsTheMeltPoolFrameOfNistTopDown) {
 
 TEST(Picture, RefusesATruncatedPictureInsteadOfReadingZeros) {
   NEED_SAMPLE(bmp);
-  const Temporary folder;
+  const TestFolder folder;
   const std::string whole = read_file(samples / bmp);
   EXPECT_NE(refusal(folder.file("cut.bmp", whole.substr(0, 9000))).find("ends before its last row"),
             std::string::npos);
 }
 
+TEST(Picture, RefusesWhatOpenCvWouldFillWithZeros) {
+  const TestFolder folder;
+  const auto picture = synthetic::scene(20, 10, 0);
+  const std::string deflated = synthetic::png(picture), rows = synthetic::bmp(picture);
+  ASSERT_EQ(refusal(folder.file("a.png", deflated)), "");
+  ASSERT_EQ(refusal(folder.file("a.bmp", rows)), "");
+  for (std::size_t at = 8; at < deflated.size(); ++at) {  // every byte has a checksum
+    std::string bad = deflated;
+    bad[at] = static_cast<char>(bad[at] ^ 1);
+    EXPECT_NE(refusal(folder.file("b.png", bad)), "") << at;
+  }
+  std::string packed = rows, endless = rows;
+  packed[30] = 1;
+  EXPECT_TRUE(says(refusal(folder.file("c.bmp", packed)), "run-length"));
+  endless[24] = 1;  // 65536 rows more
+  EXPECT_TRUE(says(refusal(folder.file("d.bmp", endless)), "ends before its last row"));
+}
+
 TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
-  const Temporary folder;
+  const TestFolder folder;
   const std::string text = refusal(folder.file("notes.ptw", "The quick brown fox\nand more\n"));
   EXPECT_NE(text.find("its content is text (it begins with \"The quick brown fox\")"),
             std::string::npos)
@@ -241,7 +232,7 @@ TEST(OpenRecording, SaysInASentenceWhatIsWrong) {
 
 TEST(OpenRecording, GoesByContentNotByName) {
   NEED_SAMPLE(bmp);
-  const Temporary folder;
+  const TestFolder folder;
   EXPECT_EQ(open_recording(folder.file("wrong.ptw", read_file(samples / bmp))).header().format,
             "picture");
 }

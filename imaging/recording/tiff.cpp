@@ -17,6 +17,9 @@
 namespace meltproof::imaging {
 namespace {
 
+// More than this no compression gains, so a damaged size is told before memory is asked for.
+constexpr std::uint64_t most_gain = 20000, smallest_part = 1 << 16;
+
 /// How the pixels of a page are stored.
 struct Layout {
   std::uint32_t width = 0, height = 0;
@@ -36,13 +39,17 @@ int remember(TIFF*, void* text, const char*, const char* format, va_list argumen
   return 1;  // handled: libtiff prints nothing itself
 }
 
-Tiff open_handle(const std::filesystem::path& path) {
+Tiff open_handle(const std::filesystem::path& path, std::uint64_t file_size) {
   Tiff tiff;
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), remember, tiff.last_error.get());
   TIFFOpenOptionsSetWarningHandlerExtR(
       options.get(), [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
+  // libtiff itself believes what a damaged directory says of its own length.
+  TIFFOpenOptionsSetMaxSingleMemAlloc(
+      options.get(), static_cast<tmsize_t>(std::min<std::uint64_t>(
+                         most_gain * file_size + smallest_part, std::uint64_t{4} << 30)));
   TIFF* handle = TIFFOpenExt(path.c_str(), "r", options.get());
   if (!handle)
     throw InputError(path.string() + ": the TIFF cannot be opened (" + *tiff.last_error +
@@ -85,6 +92,23 @@ bool is_whole(TIFF* t, std::uint64_t file_size) {
   return true;
 }
 
+/// Bytes of a strip or tile in memory. @throws InputError if the file cannot hold as much, or if
+/// rows of it have no length.
+std::size_t part_size(TIFF* t, const std::filesystem::path& path, std::size_t page,
+                      std::uint64_t file_size) {
+  const bool tiled = TIFFIsTiled(t) != 0;
+  std::uint32_t rows = 1, columns = 1;
+  TIFFGetFieldDefaulted(t, tiled ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP, &rows);
+  if (tiled) TIFFGetField(t, TIFFTAG_TILEWIDTH, &columns);
+  const tmsize_t size = tiled ? TIFFTileSize(t) : TIFFStripSize(t);
+  const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(0, size));
+  if (bytes == 0 || rows == 0 || columns == 0 || bytes > most_gain * file_size + smallest_part)
+    throw InputError(path.string() + ": frame " + std::to_string(page) + " comes in parts of " +
+                     std::to_string(rows) + " rows and " + std::to_string(bytes) +
+                     " bytes, which the file cannot hold; it is damaged.");
+  return static_cast<std::size_t>(bytes);
+}
+
 void convert(const char* raw, std::size_t count, const Layout& layout, float* into) {
   const auto as = [&]<class T>(T) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -100,25 +124,25 @@ void convert(const char* raw, std::size_t count, const Layout& layout, float* in
   return is_signed ? as(std::int32_t{}) : as(std::uint32_t{});
 }
 
-void read_page(const Tiff& tiff, const std::filesystem::path& path, const Layout& layout,
-               Frame& frame) {
+void read_page(const Tiff& tiff, const ByteFile& file, const Layout& layout, Frame& frame) {
   TIFF* t = tiff.handle.get();
   const auto failed = [&] {
-    throw InputError(path.string() + ": frame " + std::to_string(frame.index) +
+    throw InputError(file.path().string() + ": frame " + std::to_string(frame.index) +
                      " cannot be decoded (" + *tiff.last_error + "); the file is damaged.");
   };
+  std::vector<char> part(part_size(t, file.path(), frame.index, file.size()));
   if (!TIFFIsTiled(t)) {
-    std::vector<char> strip(static_cast<std::size_t>(TIFFStripSize(t)));
     std::uint32_t rows_per_strip = layout.height;
     TIFFGetFieldDefaulted(t, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
     rows_per_strip = std::min(rows_per_strip, layout.height);
     for (std::uint32_t row = 0; row < layout.height; row += rows_per_strip) {
       const std::size_t rows = std::min(rows_per_strip, layout.height - row);
       const std::size_t wanted = rows * layout.width * layout.bits / 8;
-      const auto got = TIFFReadEncodedStrip(t, TIFFComputeStrip(t, row, 0), strip.data(),
+      if (wanted > part.size()) failed();  // libtiff means another layout than these tags
+      const auto got = TIFFReadEncodedStrip(t, TIFFComputeStrip(t, row, 0), part.data(),
                                             static_cast<tmsize_t>(wanted));
       if (got < 0 || static_cast<std::size_t>(got) != wanted) failed();
-      convert(strip.data(), rows * layout.width, layout,
+      convert(part.data(), rows * layout.width, layout,
               frame.values.data() + std::size_t{row} * layout.width);
     }
     return;
@@ -126,14 +150,16 @@ void read_page(const Tiff& tiff, const std::filesystem::path& path, const Layout
   std::uint32_t tile_width = 0, tile_height = 0;
   TIFFGetField(t, TIFFTAG_TILEWIDTH, &tile_width);
   TIFFGetField(t, TIFFTAG_TILELENGTH, &tile_height);
-  std::vector<char> tile(static_cast<std::size_t>(TIFFTileSize(t)));
   const std::size_t row_bytes = static_cast<std::size_t>(TIFFTileRowSize(t));
+  if (row_bytes * tile_height > part.size() ||
+      std::size_t{tile_width} * layout.bits / 8 > row_bytes)
+    failed();
   for (std::uint32_t y = 0; y < layout.height; y += tile_height)
     for (std::uint32_t x = 0; x < layout.width; x += tile_width) {
-      if (TIFFReadTile(t, tile.data(), x, y, 0, 0) < 0) failed();
+      if (TIFFReadTile(t, part.data(), x, y, 0, 0) < 0) failed();
       const std::size_t columns = std::min(tile_width, layout.width - x);
       for (std::uint32_t row = 0; row < std::min(tile_height, layout.height - y); ++row)
-        convert(tile.data() + row * row_bytes, columns, layout,
+        convert(part.data() + row * row_bytes, columns, layout,
                 frame.values.data() + std::size_t{y + row} * layout.width + x);
     }
 }
@@ -149,7 +175,7 @@ bool is_tiff(std::string_view first_bytes) {
 
 Recording open_tiff(const std::filesystem::path& path) {
   const ByteFile file(path);
-  const Tiff tiff = open_handle(path);
+  const Tiff tiff = open_handle(path, file.size());
   TIFF* t = tiff.handle.get();
   RecordingHeader header;
   header.path = path;
@@ -183,6 +209,12 @@ Recording open_tiff(const std::filesystem::path& path) {
   if (layout) {
     header.width = layout->width;
     header.height = layout->height;
+    check_frame_size(header);
+    if (std::uint64_t{layout->width} * layout->height * layout->bits / 8 >
+        most_gain * file.size() + smallest_part)
+      throw InputError(path.string() + ": the pages are said to have " +
+                       std::to_string(layout->width) + " x " + std::to_string(layout->height) +
+                       " pixels, which the file cannot hold; it is damaged.");
     if (layout->format == SAMPLEFORMAT_UINT) {
       header.saturation = static_cast<double>((std::uint64_t{1} << layout->bits) - 1);
       header.under_range = 0;
@@ -191,12 +223,12 @@ Recording open_tiff(const std::filesystem::path& path) {
   header.frames = places.size();
   header.notes.push_back(
       "TIFF stores no times: frame rate and integration time are unknown unless they are given.");
-  return {header, [tiff, path, places, layout](std::size_t index, Frame& frame) {
+  return {header, [tiff, file, path, places, layout](std::size_t index, Frame& frame) {
             if (!TIFFSetSubDirectory(tiff.handle.get(), places[index]))
               throw InputError(path.string() + ": page " + std::to_string(index) +
                                " cannot be reached (" + *tiff.last_error +
                                "); the file is damaged.");
-            read_page(tiff, path, *layout, frame);
+            read_page(tiff, file, *layout, frame);
           }};
 }
 

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/recording/csv.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.hpp"
+#include "imaging/recording/bytes.hpp"
+#include "imaging/recording/csv_blocks.hpp"
+#include "imaging/recording/csv_row.hpp"
+#include "imaging/recording/signal_unit.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+constexpr std::uint64_t sample_size = 1 << 18;
+
+/// The beginning of a text up to its last whole value.
+std::string_view whole_values(std::string_view text) {
+  const auto end = text.find_last_of("\n;\t, ");
+  return end == std::string_view::npos ? text : text.substr(0, end);
+}
+
+/// The shape that holds most values.
+std::pair<std::size_t, std::size_t> main_shape(const std::vector<CsvBlock>& blocks) {
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> values;
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  for (const auto& block : blocks) {
+    const std::pair shape{block.rows, block.width};
+    const std::size_t count = values[shape] += block.rows * block.width;
+    if (count > values[best]) best = shape;
+  }
+  return best;
+}
+
+/// A frame that begins with row `first` of a block.
+struct Place {
+  std::uint64_t place = 0;
+  std::size_t first = 0;
+};
+
+/// Sorts the blocks into frames, preamble and what was cut off.
+std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& blocks,
+                             const ReadOptions& options, RecordingHeader& header) {
+  const auto [rows, width] = main_shape(blocks);
+  header.width = width;
+  header.height = options.frame_rows.value_or(rows);
+  if (header.height == 0)
+    throw InputError(file.path().string() +
+                     ": frames of 0 rows were asked for; give the number of rows of a frame.");
+  std::size_t last = blocks.size();  // the last block with a whole frame
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (blocks[i].width == width && blocks[i].rows >= header.height) last = i;
+  std::vector<Place> frames;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto& block = blocks[i];
+    if (block.width == width &&
+        (options.frame_rows ? block.rows >= header.height : block.rows == header.height)) {
+      for (std::size_t row = 0; row + header.height <= block.rows; row += header.height)
+        frames.push_back({block.place, row});
+      if (block.rows % header.height != 0) ++header.frames_lost;
+      continue;
+    }
+    if (last == blocks.size() || i > last) {  // begun behind the last whole frame
+      header.frames_lost = std::max<std::size_t>(header.frames_lost, 1);
+    } else if (block.width == width) {
+      throw InputError(fmt::format(
+          "{}: the {} rows from line {} on are not as many as the {} of the other frames; repair "
+          "the line that interrupts them, or say how many rows a frame has.",
+          file.path().string(), block.rows, block.line, header.height));
+    }
+  }
+  return frames;
+}
+
+}  // namespace
+
+bool is_csv(std::string_view first_bytes) {
+  const bool text = std::all_of(first_bytes.begin(), first_bytes.end(), [](unsigned char c) {
+    return c == '\n' || c == '\r' || c == '\t' || c >= 0x20;
+  });
+  CsvDialect dialect;
+  return text && detect_csv_dialect(whole_values(first_bytes), {}, dialect);
+}
+
+Recording open_csv(const std::filesystem::path& path, const ReadOptions& options) {
+  const ByteFile file(path);
+  CsvDialect dialect;
+  if (!detect_csv_dialect(whole_values(file.beginning(sample_size)), options, dialect))
+    throw InputError(
+        path.string() +
+        ": there is no row of numbers in the text; say which separator and decimal sign it has.");
+  RecordingHeader header;
+  header.path = path;
+  std::string preamble;
+  const auto blocks = find_csv_blocks(file, dialect, options.preamble_lines.value_or(0), preamble);
+  const auto frames = frames_of(file, blocks, options, header);
+  header.frames = frames.size();
+  header.notes.push_back("A text holds no times: frame rate and integration time are unknown.");
+  const SignalScale scale = describe_signal(csv_unit(preamble), options.unit, header);
+  return {
+      header, [file, frames, dialect, scale, width = header.width, height = header.height](
+                  std::size_t index, Frame& frame) {
+        LineReader reader(file, frames[index].place);
+        std::string_view line;
+        std::vector<float> values;
+        for (std::size_t row = 0; row < frames[index].first; ++row) reader.next(line);
+        for (std::size_t row = 0; row < height; ++row) {
+          if (!reader.next(line) || !parse_csv_row(line, dialect, values) || values.size() != width)
+            throw InputError(fmt::format(
+                "{}: row {} of frame {} is no row of {} numbers any more; the file was changed "
+                "while it was read.",
+                file.path().string(), row, index, width));
+          std::copy(values.begin(), values.end(),
+                    frame.values.begin() + static_cast<std::ptrdiff_t>(row * width));
+        }
+        scale.apply(frame.values);
+      }};
+}
+
+}  // namespace meltproof::imaging

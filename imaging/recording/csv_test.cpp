@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Synthetic texts in the styles of FLIR's, InfraTec's and Optris's software.
+#include "imaging/recording/csv.hpp"
+
+#include <gtest/gtest.h>
+
+#include "imaging/recording/csv_row.hpp"
+#include "imaging/recording/folder.hpp"
+#include "imaging/recording/formats.hpp"
+#include "imaging/recording/synthetic_files.hpp"
+#include "imaging/recording/test_folder.hpp"
+
+namespace meltproof::imaging {
+namespace {
+
+const std::vector<float> two_by_three = {20.1F, 20.2F, 20.3F, 21.1F, 21.2F, 21.3F};
+
+std::vector<float> read(const TestFolder& folder, const std::string& text,
+                        const ReadOptions& options = {}) {
+  const auto recording = open_recording(folder.file("a.csv", text), options);
+  EXPECT_EQ(recording.header().width, 3u) << text;
+  EXPECT_EQ(recording.header().height, 2u) << text;
+  return recording.frame(0).values;
+}
+
+TEST(Csv, FindsSeparatorAndDecimalSign) {
+  const TestFolder folder;
+  EXPECT_EQ(read(folder, "20.1,20.2,20.3\n21.1,21.2,21.3\n"), two_by_three);
+  EXPECT_EQ(read(folder, "20,1;20,2;20,3\r\n21,1;21,2;21,3\r\n"), two_by_three);
+  EXPECT_EQ(read(folder, "20,1\t20,2\t20,3\n21,1\t21,2\t21,3"), two_by_three);
+  EXPECT_EQ(read(folder, "20.1  20.2 20.3 \n 21.1 21.2  21.3\n"), two_by_three);
+  EXPECT_EQ(read(folder, "20.1, 20.2, 20.3,\n21.1, 21.2, 21.3,\n"), two_by_three);
+  EXPECT_EQ(read(folder, "\"20,1\",\"20,2\",\"20,3\"\n\"21,1\",\"21,2\",\"21,3\"\n"), two_by_three);
+  EXPECT_EQ(read(folder,
+                 "\xEF\xBB\xBF"
+                 "20.1;20.2;20.3\n21.1;21.2;21.3\n"),
+            two_by_three);
+  EXPECT_EQ(read(folder, "2.01e1;+20.2;20.3\n21.1;21.2;21.3\n"), two_by_three);
+}
+
+TEST(Csv, KeepsWhatTheUserSays) {
+  const TestFolder folder;
+  // Without options three columns with a decimal comma look like six.
+  const std::string text = "20,1,20,2,20,3\n21,1,21,2,21,3\n";
+  const auto guessed = open_csv(folder.file("a.csv", text));
+  EXPECT_EQ(guessed.header().width, 6u);
+  EXPECT_EQ(read(folder, "1|2|3\n20.1|20.2|20.3\n21.1|21.2|21.3\n",
+                 {.separator = "|", .preamble_lines = 1}),
+            two_by_three);
+  const auto path = folder.file("b.csv", "1;2\n3;4\n");
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.decimal = "x"}); }), "decimal sign"));
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.unit = "mood"}); }), "mood"));
+  EXPECT_FLOAT_EQ(open_csv(path, {.unit = "degC"}).frame(0).values[0], 274.15F);
+}
+
+TEST(Csv, PassesOverAPreambleAndReadsTheUnitInIt) {
+  const TestFolder folder;
+  const std::string rows = "20,1;20,2;20,3\n21,1;21,2;21,3\n";
+  const auto infratec =
+      open_recording(folder.file("a.asc",
+                                 "[Settings]\nVersion=2\nImageWidth=3\nImageHeight=2\nTempUnit=\xB0"
+                                 "C\n[Data]\n" +
+                                     rows));
+  EXPECT_EQ(infratec.header().quantity, SignalQuantity::temperature);
+  EXPECT_EQ(infratec.header().unit, "K");
+  EXPECT_FLOAT_EQ(infratec.frame(0).values[0], 293.25F);
+  const auto utf8 = open_csv(folder.file("b.csv",
+                                         "Unit:;\xC2\xB0"
+                                         "C\nSize;3;2\n3;2\n" +
+                                             rows));
+  EXPECT_EQ(utf8.header().frames, 1u);
+  EXPECT_FLOAT_EQ(utf8.frame(0).values[5], 294.45F);
+  const auto counts = open_csv(folder.file("c.csv",
+                                           "Units: Counts\nAtmosphere: 20 \xC2\xB0"
+                                           "C\n" +
+                                               rows));
+  EXPECT_EQ(counts.header().quantity, SignalQuantity::counts);
+  const auto nothing = open_csv(folder.file("d.csv", rows));
+  EXPECT_EQ(nothing.header().quantity, SignalQuantity::counts);
+  EXPECT_TRUE(says(nothing.header().notes.back(), "does not say what its values are"));
+  EXPECT_EQ(csv_unit("from 20 Celsius, that is 293 Kelvin"), "");
+}
+
+TEST(Csv, SeparatesFramesByBlankLinesAndByWords) {
+  const TestFolder folder;
+  const auto first = synthetic::scene(6, 4, 0), second = synthetic::scene(6, 4, 1);
+  for (const std::string between :
+       {"\n", "Frame 2\n", "\nFrame 2\nTime: 0.01 s\n\n", ";;;\n", "2;0.01\n"}) {
+    const auto recording =
+        open_csv(folder.file("a.csv", "A recording\n" + synthetic::csv(first, ';', '.') + between +
+                                          synthetic::csv(second, ';', '.')));
+    ASSERT_EQ(recording.header().frames, 2u) << between;
+    const auto f = recording.frame(1);
+    for (std::size_t i = 0; i < f.values.size(); ++i)
+      ASSERT_FLOAT_EQ(f.values[i], static_cast<float>(second.counts[i]) / 100);
+  }
+}
+
+TEST(Csv, DividesRowsWhereNothingSeparatesFrames) {
+  const TestFolder folder;
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i) text += synthetic::csv(synthetic::scene(6, 4, i), ',', '.');
+  text += "1,2,3,4,5,6\n";
+  const auto recording = open_csv(folder.file("a.csv", text), {.frame_rows = 4});
+  ASSERT_EQ(recording.header().frames, 3u);
+  EXPECT_EQ(recording.header().frames_lost, 1u);
+  EXPECT_FLOAT_EQ(recording.frame(2).values[23],
+                  static_cast<float>(synthetic::scene(6, 4, 2).counts[23]) / 100);
+}
+
+TEST(Csv, KeepsWholeFramesAndNamesTheLineThatInterrupts) {
+  const TestFolder folder;
+  const std::string frame = synthetic::csv(synthetic::scene(6, 4, 0), ';', '.');
+  const std::string whole = frame + "\n" + frame + "\n" + frame;
+  const auto cut = open_csv(folder.file("a.csv", whole.substr(0, whole.size() - 20)));
+  EXPECT_EQ(cut.header().frames, 2u);
+  EXPECT_EQ(cut.header().frames_lost, 1u);
+  const auto torn = folder.file("b.csv", frame + "\n1;2;3;4;5;6\noops;\n" + frame + "\n" + frame);
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(torn); }), "line 6"));
+  // No row is lost in silence: neither one with a word in it, nor those in front of it.
+  for (const std::string& bad :
+       {"1;2;x;4;5;6\n" + frame, frame + "1;2;x;4;5;6\n", "1;2;3;4;5;6\nFrame\n" + frame}) {
+    const auto path = folder.file("c.csv", bad);
+    EXPECT_TRUE(says(refusal_of([&] { open_csv(path); }), "repair")) << bad;
+  }
+}
+
+TEST(Csv, MarksMissingValuesAsDead) {
+  const TestFolder folder;
+  const auto f = open_csv(folder.file("a.csv", "1;;3\n4;NaN;---\n1;2;3\n")).frame(0);
+  const auto d = PixelStatus::dead, g = PixelStatus::good;
+  EXPECT_EQ(f.status, (std::vector{g, d, g, g, d, d, g, g, g}));
+}
+
+TEST(Csv, ReadsLinesLongerThanAnyBuffer) {
+  const TestFolder folder;
+  const auto picture = synthetic::scene(70000, 2, 0);
+  const auto recording = open_csv(folder.file("a.csv", synthetic::csv(picture, ';', ',')));
+  ASSERT_EQ(recording.header().width, 70000u);
+  EXPECT_FLOAT_EQ(recording.frame(0).values.back(),
+                  static_cast<float>(picture.counts.back()) / 100);
+}
+
+TEST(Folder, ReadsFilesInTheOrderOfTheirNumbers) {
+  const TestFolder folder;
+  for (const std::size_t i : {10u, 2u, 1u})
+    folder.file("frame_" + std::to_string(i) + ".csv",
+                synthetic::csv(synthetic::scene(6, 4, i), ';', ','));
+  const auto recording = open_recording(folder.path());
+  ASSERT_EQ(recording.header().frames, 3u);
+  EXPECT_EQ(recording.header().companions.size(), 3u);
+  EXPECT_EQ(recording.header().sha256.size(), 64u);
+  for (const std::size_t i : {2u, 0u, 1u}) {
+    const std::size_t number = i == 2 ? 10 : i + 1;
+    EXPECT_FLOAT_EQ(recording.frame(i).values[9],
+                    static_cast<float>(synthetic::scene(6, 4, number).counts[9]) / 100);
+    EXPECT_EQ(recording.frame(i).index, i);
+  }
+  folder.file("frame_3.csv", "1;2\n3;4\n");
+  EXPECT_TRUE(says(refusal_of([&] { open_recording(folder.path()); }), "frame_3.csv"));
+  folder.file("frame_3.irb", "");
+  EXPECT_TRUE(says(refusal_of([&] { open_recording(folder.path()); }), ".csv and .irb"));
+  EXPECT_TRUE(natural_order("a9b10", "a09b11"));
+  EXPECT_FALSE(natural_order("a10", "a9"));
+}
+
+TEST(Folder, SaysThatItIsEmpty) {
+  const TestFolder folder;
+  EXPECT_TRUE(says(refusal_of([&] { open_recording(folder.path()); }), "holds no file"));
+}
+
+}  // namespace
+}  // namespace meltproof::imaging

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The counts of a FLIR frame, however they are compressed.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "imaging/recording/flir_block.hpp"
+
+namespace meltproof::imaging {
+
+/// Whether the 16-bit samples of a PNG frame have their bytes the wrong way round, as most FLIR
+/// cameras and programs write them and some do not; nothing in the file tells. The rule: the right
+/// order is the one in which neighbours in a row differ less, summed over the frame, because a
+/// sensor's noise fills the low byte; equal sums count as exchanged.
+/// @throws InputError if the frame cannot be decoded.
+bool flir_png_is_exchanged(const ByteFile& file, const FlirBlock& block, std::size_t frame);
+
+/// Reads the counts of a frame, row-major, into `counts`, which has height * width values already.
+/// @param exchanged for PNG: what flir_png_is_exchanged() says.
+/// @throws InputError if the record cannot be decoded or has another size than the block says.
+void read_flir_counts(const ByteFile& file, const FlirBlock& block, bool exchanged,
+                      std::size_t frame, std::vector<float>& counts);
+
+}  // namespace meltproof::imaging
