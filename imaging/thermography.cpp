@@ -73,12 +73,15 @@ void write_all(const std::filesystem::path& folder,
 }  // namespace
 
 int main(int argc, char** argv) {
-  Program program("meltproof-thermography",
-                  "Reads an infrared recording (PTW, SEQ, TIFF, BMP, PNG, HDF5) and measures the "
-                  "melt pool in it.\n"
-                  "Example: meltproof-thermography track.ptw --output results --level 8000");
+  Program program(
+      "meltproof-thermography",
+      "Reads an infrared recording and measures the melt pool in it. It reads PTW, SEQ, FFF, "
+      "CSQ,\nradiometric JPEG, SFMOV with its .inc, IRB, TIFF, BMP, PNG, HDF5, MATLAB, "
+      "CSV, and folders\nof one file a frame.\n"
+      "Example: meltproof-thermography track.ptw --output results --level 8000");
   std::string recording_path, output, settings_path;
-  program.app.add_option("recording", recording_path, "the camera's file")->required();
+  program.app.add_option("recording", recording_path, "the camera's file, or a folder of frames")
+      ->required();
   program.app
       .add_option("-o,--output", output, "folder for summary.json, frames.csv and the pictures")
       ->required();
@@ -96,9 +99,13 @@ int main(int argc, char** argv) {
     read_settings(input, settings_path, given);
     provenance.resolved_input = input.resolved();
 
-    const Recording recording = apply(settings, open_recording(recording_path));
+    const Recording recording =
+        apply(settings, open_recording(recording_path, settings.read_options()));
     const auto& header = recording.header();
     provenance.inputs.push_back({recording_path, header.sha256});
+    // Of a folder the checksum covers the files already.
+    if (!std::filesystem::is_directory(recording_path))
+      for (const auto& file : header.companions) provenance.add_input(file);
     for (const auto& file : input.files()) provenance.add_input(file);
     PixelSize pixel{header.pixel_size, header.pixel_size, 0, 0};
     if (!settings.calibration.empty()) pixel = read_pixel_size(settings.calibration);

@@ -46,6 +46,33 @@ InputTable reference_table(Settings& s) {
   return table;
 }
 
+InputTable reading_table(Settings& s) {
+  InputTable table("reading", "What a file does not say of itself; what is empty is found out.");
+  table
+      .text(s.reading.dataset,
+            {.name = "dataset", .about = "HDF5, MATLAB: path of the array with the frames"})
+      .text(s.reading.axes, {.name = "axes",
+                             .about = "HDF5, MATLAB: what its indices count, f frames, h rows, w "
+                                      "columns, as the file's own language writes them"})
+      .text(s.reading.separator, {.name = "separator",
+                                  .about = "CSV: what stands between two values",
+                                  .choices = {"", "tab", "space", ",", ";", "|"}})
+      .text(s.reading.decimal,
+            {.name = "decimal", .about = "CSV: decimal sign", .choices = {"", ".", ","}})
+      .whole(s.preamble_lines, {.name = "preamble_lines",
+                                .about = "CSV: lines at the beginning without pixels; -1: found",
+                                .minimum = -1,
+                                .maximum = 1000000})
+      .whole(s.frame_rows, {.name = "frame_rows",
+                            .about = "CSV: rows of a frame where nothing separates them; 0: found",
+                            .minimum = 0,
+                            .maximum = 1000000})
+      .text(s.reading.unit, {.name = "unit",
+                             .about = "what values are whose file does not say it",
+                             .choices = {"", "count", "K", "degC"}});
+  return table;
+}
+
 InputTable budget_table(BudgetSettings& b) {
   InputTable table("budget",
                    "What is known of the inputs of the uncertainty budget; standard "
@@ -112,6 +139,13 @@ InputTable budget_table(BudgetSettings& b) {
 }
 
 }  // namespace
+
+ReadOptions Settings::read_options() const {
+  ReadOptions options = reading;
+  if (preamble_lines >= 0) options.preamble_lines = static_cast<std::size_t>(preamble_lines);
+  if (frame_rows > 0) options.frame_rows = static_cast<std::size_t>(frame_rows);
+  return options;
+}
 
 MeasurementRequest Settings::measurement(const PixelSize& pixel) const {
   MeasurementRequest m;
@@ -211,6 +245,7 @@ Input declare(Settings& s) {
                                      "gains"})
       .table(reference_table(s))
       .table(budget_table(s.budget))
+      .table(reading_table(s))
       .file(s.calibration,
             {.name = "calibration",
              .about =

@@ -8,6 +8,7 @@
 
 #include "base/input.hpp"
 #include "imaging/meltpool/measurement.hpp"
+#include "imaging/recording/options.hpp"
 
 namespace meltproof::imaging {
 
@@ -26,6 +27,10 @@ struct Settings {
   std::filesystem::path spectral_response, window_spectrum;
   std::filesystem::path uniform_cold, uniform_hot;
   std::filesystem::path calibration;
+  ReadOptions reading;                            ///< but for the two numbers
+  long long preamble_lines = -1, frame_rows = 0;  ///< as the file says
+  /// How to open a recording.
+  ReadOptions read_options() const;
   LevelRequest request() const {
     return {level, reference_temperature, emissivity, emissivity_liquid, transmission};
   }

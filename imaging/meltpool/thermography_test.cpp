@@ -184,10 +184,30 @@ TEST_F(Thermography, RecoversTheLengthOfAnAnalyticPoolFilmedByTheVirtualCamera) 
   EXPECT_GT(summary()["length_um"]["mean"].get<double>(), 1.08 * 261.80);
 }
 
+TEST_F(Thermography, IsToldHowToReadWhatAFileDoesNotSay) {
+  // Synthetic: two frames of 8 rows one behind the other, a warm square in each.
+  std::string text;
+  for (int row = 0; row < 16; ++row)
+    for (int column = 0; column < 10; ++column) {
+      const bool warm = row % 8 >= 2 && row % 8 < 6 && column >= 3 && column < 7;
+      text += std::to_string(warm ? 900 : 100) + (column < 9 ? ";" : "\n");
+    }
+  const std::string csv = file("frames.csv", text).string();
+  EXPECT_EQ(run(csv + " --level 500 --settings " +
+                file("r.toml", "[reading]\nframe_rows = 8\nunit = 'count'\n").string()),
+            0)
+      << text_;
+  EXPECT_EQ(summary()["frames"], 2);
+  EXPECT_EQ(summary()["height"], 8);
+  expect_refusal(csv + " --settings " + file("w.toml", "[reading]\nunit = 'furlong'\n").string(),
+                 "reading.unit");
+}
+
 TEST_F(Thermography, RefusesInOneSentenceAndLeavesNothingBehind) {
   expect_refusal(file("notes.ptw", "Monday: cleaned the lens.\n").string(), "text");
   expect_refusal((folder_ / "missing.ptw").string(), "no such file");
-  expect_refusal(folder_.string(), "no such file");
+  // A folder is a recording of the files in it; in this one there is only the note.
+  expect_refusal(folder_.string(), "text");
   const auto picture = samples / "meltpool_sample_img.bmp";
   if (!fs::exists(picture)) return;
   expect_refusal(picture.string() + " --reference-temperature '1683 m'", "reference_temperature");
