@@ -15,7 +15,6 @@ recording=${RECORDING:-}
 calibration=${CALIBRATION:-}
 [ -n "$recording" ] || refuse "say which recording: make process RECORDING=path/to/file"
 [ -e "$recording" ] || refuse "the recording '$recording' does not exist; give the path from here ($(basename "$PWD")/) or the whole path."
-[ -f "$recording" ] || refuse "the recording '$recording' is a folder; give the one file that holds the frames."
 [ -r "$recording" ] || refuse "the recording '$recording' cannot be read; check its permissions."
 if [ -n "$calibration" ]; then
   [ -f "$calibration" ] || refuse "the calibration '$calibration' does not exist."

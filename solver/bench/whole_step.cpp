@@ -87,8 +87,7 @@ NothingSkipped skip_nothing(const DevelopedPool& pool) {
 
 StageResult whole_step_stage(const DevelopedPool& pool, const BenchSettings& settings) {
   EngineState begin = pool.state;
-  // A full sort would let the lists forget who was near a moving particle; it is charged by its
-  // share instead.
+  // A full sort may or may not fall into what is timed; it is charged by its share instead.
   begin.builds_since_sort = 0;
   const double sorting = sort_seconds_per_build(pool);
   NothingSkipped all = skip_nothing(pool);

@@ -58,7 +58,27 @@ Input declare(TrackCase& t) {
             {.name = "density",
              .about = "One reference density as the paper's Table 3 has it, or each material's own "
                       "real_density: powder grains of AlSi10Mg then weigh a third.",
-             .choices = {"uniform", "own"}});
+             .choices = {"uniform", "own"}})
+      .quantity(t.conductivity_factor,
+                {.name = "conductivity_factor",
+                 .unit = "1",
+                 .about = "On the base material's conductivity, for sensitivities.",
+                 .minimum = 0.1,
+                 .maximum = 10})
+      .quantity(t.tension_slope_factor,
+                {.name = "tension_slope_factor",
+                 .unit = "1",
+                 .about = "On the slope of the base material's surface tension with temperature, "
+                          "for sensitivities; its value where the table begins stays.",
+                 .minimum = -10,
+                 .maximum = 10})
+      .quantity(t.additive_molar_mass,
+                {.name = "additive_molar_mass",
+                 .unit = "kg mol-1",
+                 .about = "Of the additive instead of its table's value; negative: the table's. "
+                          "The paper prints 0.33214, a sum over a formula (errata 14).",
+                 .minimum = -1,
+                 .maximum = 1});
 
   InputTable laser("laser", "The beam (paper, Table 2).");
   laser
@@ -206,20 +226,6 @@ Input declare(TrackCase& t) {
       .table(flow_table(t.flow))
       .table(std::move(output));
   return Input(std::move(root));
-}
-
-Mixture read_mixture(const TrackCase& t) {
-  const Form form = t.form == "as_printed" ? Form::as_printed : Form::repaired;
-  Material base = read_material(t.base, form);
-  if (t.absorptivity >= 0) {
-    base.absorptivity = t.absorptivity;
-  }
-  Material additive = read_material(t.additive, form);
-  if (t.density == "own") {
-    base.density = base.real_density;
-    additive.density = additive.real_density;
-  }
-  return {base, additive};
 }
 
 std::vector<std::string> warnings(const TrackCase& t, const Mixture& mixture) {

@@ -25,6 +25,10 @@ struct TrackCase {
   std::string diffusivity_law;
   std::string form = "repaired";
   std::string density = "uniform";  ///< "uniform", or "own": each material's real_density
+  // Inputs of the sensitivity study, as multiples of what the files hold.
+  double conductivity_factor = 1;   ///< on the base material's
+  double tension_slope_factor = 1;  ///< on d sigma/dT of the base material
+  double additive_molar_mass = -1;  ///< kg mol-1; negative: the file's
 
   double power = 175, beam_radius = 40e-6, speed = 0.375, exposure = 1.04e-3;
   std::string radius_definition = "1/e2";  ///< what beam_radius means: "1/e2" or "D4sigma/2"
@@ -71,8 +75,9 @@ struct Discretisation {
 /// unresolved.
 Discretisation discretise(const TrackCase& track, const Mixture& mixture);
 
-/// Plate and additive as the case's property tables have them. @throws InputError as
-/// read_material().
+/// Plate and additive as the case's property tables have them, with the case's own absorptivity,
+/// densities, conductivity, slope of the surface tension and molar mass.
+/// @throws InputError as read_material().
 Mixture read_mixture(const TrackCase& track);
 
 /// Sentences about what the case cannot resolve well; empty if nothing is wrong.

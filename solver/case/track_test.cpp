@@ -97,6 +97,32 @@ TEST(TrackCase, ADensityThatGoesToItsSumFasterThanSoundIsRefused) {
   EXPECT_THROW(warnings(t, paper_mixture()), InputError);
 }
 
+TEST(TrackCase, SensitivitiesChangeOneInputAndNothingElse) {
+  TrackCase t;
+  t.base = "data/materials/316L.toml";
+  t.additive = "data/materials/AlSi10Mg.toml";
+  const Mixture file = read_mixture(t);
+  t.conductivity_factor = 1.05;
+  t.tension_slope_factor = 1.2;
+  t.additive_molar_mass = 0.33214;
+  const Mixture changed = read_mixture(t);
+  for (const double temperature : {300.0, 1660.0, 2000.0, 2800.0}) {
+    EXPECT_NEAR(changed.conductivity(temperature, 0), 1.05 * file.conductivity(temperature, 0),
+                1e-12);
+    EXPECT_EQ(changed.conductivity(temperature, 1), file.conductivity(temperature, 1));
+    EXPECT_EQ(changed.viscosity(temperature, 0), file.viscosity(temperature, 0));
+  }
+  // Constant below 2166 K, then -1.1e-4 N/(m K): the slope changes, the value of cool melt does
+  // not.
+  EXPECT_NEAR(changed.surface_tension(1700, 0), 1.82, 1e-12);
+  EXPECT_NEAR(changed.surface_tension(2166, 0), 1.82, 1e-5);
+  EXPECT_NEAR(changed.surface_tension(2800, 0) - changed.surface_tension(2400, 0), -1.32e-4 * 400,
+              1e-12);
+  EXPECT_EQ(changed.surface_tension(2800, 1), file.surface_tension(2800, 1));
+  EXPECT_EQ(changed.molar_mass(1), 0.33214);
+  EXPECT_EQ(changed.molar_mass(0), file.molar_mass(0));
+}
+
 TEST(MeltPool, ASphericalPoolIsMeasuredFinerThanTheSpacing) {
   const double dx = 10e-6, radius = 57.3e-6;
   Particles particles;

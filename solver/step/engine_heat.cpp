@@ -9,8 +9,8 @@
 namespace meltproof::solver {
 namespace {
 
-/// Metal whose enthalpy would change by more than this within a round takes every step, J kg-1:
-/// some 10 K of steel.
+/// Metal that the beam or its surface's losses would change by more than this within a round takes
+/// every step, J kg-1: some 10 K of steel.
 constexpr double slow_change = 5e3;
 
 }  // namespace
@@ -65,7 +65,8 @@ void Engine::exchange_heat(double dt, double longest) {
   }
 }
 
-/// Who is fast: what has moving metal near it, or changes quickly. The others keep the power that
+/// Who is fast: what has moving metal near it, or is heated or cooled quickly at its surface. The
+/// others keep the power that
 /// they exchange among themselves until the round closes.
 void Engine::open_round(double longest) {
   std::fill(fast_.begin(), fast_.end(), std::uint8_t{0});

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -65,6 +68,42 @@ Outcome run(bool multirate, double step_factor = 1) {
 }
 
 }  // namespace
+
+// Why a round may be 0.25 h^2/alpha long, see engine_step.cpp. On the lattice, with its moments
+// set, sum_j V_j 2 F_ij (T_i - T_j) is alpha's Laplacian: its largest eigenvalue over all waves
+// says what is stable, its diagonal up to where no new extreme can arise.
+TEST(HeatInTwoPaces, ARoundIsWithinWhatTheLatticeHolds) {
+  const QuinticSpline kernel = lattice_kernel(1, 1, 3, LatticeMoments::second);
+  std::vector<std::array<double, 4>> pairs;  // place and weight
+  double diagonal = 0;
+  for (int x = -3; x <= 3; ++x) {
+    for (int y = -3; y <= 3; ++y) {
+      for (int z = -3; z <= 3; ++z) {
+        const double squared = x * x + y * y + z * z;
+        if (squared > 0 && squared < kernel.support() * kernel.support()) {
+          const double weight = -2 * kernel.gradient_factor(squared);
+          pairs.push_back({1.0 * x, 1.0 * y, 1.0 * z, weight});
+          diagonal += weight;
+        }
+      }
+    }
+  }
+  double largest = 0;
+  constexpr int waves = 12;
+  for (int a = 0; a <= waves; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      for (int c = 0; c <= b; ++c) {
+        double eigenvalue = 0;
+        for (const auto& [x, y, z, weight] : pairs) {
+          eigenvalue += weight * (1 - std::cos(std::numbers::pi / waves * (a * x + b * y + c * z)));
+        }
+        largest = std::max(largest, eigenvalue);
+      }
+    }
+  }
+  EXPECT_NEAR(largest, 4.0, 0.05);  // Euler is stable up to 2 over this: 0.5 h^2/alpha
+  EXPECT_LE(0.25 * diagonal, 1);    // and makes no new extreme while this is below one
+}
 
 TEST(HeatInTwoPaces, KeepsEnergyAndTemperaturesForAFractionOfTheWork) {
   const Outcome one = run(false), two = run(true), finer = run(false, 0.5);
