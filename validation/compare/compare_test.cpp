@@ -112,6 +112,64 @@ TEST_F(Results, AStudyTakesThePlaceOfTheSpacing) {
   EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
 }
 
+/// studies.json with synthetic shares: absorptivity 8 % of the width (sensitivity 0.6), a law 3 %.
+json with_inputs(const std::vector<std::string>& missing) {
+  return {{"quantities", {{"width", {{"relative_u", 0.05}}}}},
+          {"inputs",
+           {{"width",
+             {{"relative_u", 0.0},
+              {"parts", {{"absorptivity", 0.08}, {"law", 0.03}}},
+              {"sensitivities", {{"absorptivity", 0.6}, {"law", nullptr}}},
+              {"missing", missing}}}}}};
+}
+
+TEST_F(Results, UncertainInputsEnterTheValidationUncertainty) {
+  Row row = width_row();
+  row.simulated.study = "width";
+  put("desk/track.json", {{"width_m", 120e-6}});
+  places_.studies = folder_ / "studies.json";
+  put("studies.json", with_inputs({}));
+  const auto all = run_row(row, places_).numbers;
+  EXPECT_NEAR(*all.u_input, 120 * std::hypot(0.08, 0.03), 1e-9);
+  EXPECT_NEAR(*all.u_val, std::hypot(6.0, *all.u_input, 0.066 * 127.7), 1e-9);
+  EXPECT_EQ(all.details["u_val_is_lower_bound"], false);
+  EXPECT_TRUE(all.details["not_evaluated"].empty());
+  put("studies.json", with_inputs({"radius"}));
+  const auto part = run_row(row, places_);
+  EXPECT_EQ(part.numbers.details["u_val_is_lower_bound"], true);
+  EXPECT_EQ(part.numbers.details["inputs_not_evaluated"], json::array({"radius"}));
+  EXPECT_NE(part.finding.find("lower bound: u_input not fully"), std::string::npos);
+}
+
+TEST_F(Results, ARowOfAnotherMaterialHasItsOwnUncertainInputs) {
+  Row row = width_row();
+  row.simulated.study = "width";
+  put("desk/track.json", {{"width_m", 120e-6}});
+  places_.studies = folder_ / "studies.json";
+  put("studies.json", with_inputs({"radius"}));
+  row.simulated.inputs = {"absorptivity = 21 %", "law = 0 %", "radius = 0 %"};
+  const auto own = run_row(row, places_).numbers;
+  EXPECT_NEAR(*own.u_input, 120 * 0.6 * 0.21, 1e-9);
+  EXPECT_EQ(own.details["u_val_is_lower_bound"], false);
+  for (const char* wrong : {"law = 4 %", "colour = 0 %", "absorptivity", "absorptivity = 3 um"}) {
+    row.simulated.inputs = {wrong};
+    EXPECT_EQ(run_row(row, places_).verdict, "not computed") << wrong;
+  }
+}
+
+TEST_F(Results, AMeasurementWithoutSigmaIsNamedAndNotTakenAsExact) {
+  Row row = width_row();
+  row.input_uncertainty = 1.0;
+  row.simulated.uncertainty = "/u";
+  row.reference = {.campaign = "tracks316l", .file = "trapp2017.csv", .column = "width"};
+  row.reference.where = {"power = 99"};
+  put("desk/track.json", {{"width_m", 126e-6}, {"u", 2e-6}});
+  const auto result = run_row(row, places_);
+  EXPECT_FALSE(result.numbers.u_data);
+  EXPECT_EQ(result.numbers.details["not_evaluated"], json::array({"u_D"}));
+  EXPECT_NE(result.finding.find("lower bound: u_D not"), std::string::npos);
+}
+
 TEST_F(Results, ARowMayStandForSeveral) {
   ComparisonTable table;
   Row row;

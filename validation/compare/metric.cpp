@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "validation/compare/input_share.hpp"
 #include "validation/metrics/trend.hpp"
 #include "validation/metrics/validation_error.hpp"
 
@@ -18,12 +19,20 @@ RowNumbers difference(const Row& row, const Places& places) {
   const Datum measured = reference_number(row, places);
   n.measured = measured.value;
   n.u_data = measured.uncertainty;
-  n.u_input = row.input_uncertainty;
   n.reference_pending = !measured.value;
   const auto simulated = simulated_number(row, row.simulated.file, places);
   n.simulated = simulated.value;
   n.u_num = simulated.uncertainty;
   n.details["u_num_parts"] = simulated.parts;
+  const auto inputs = input_share(row, places);
+  n.u_input = row.input_uncertainty;
+  if (!n.u_input && inputs.relative) {
+    n.u_input = *inputs.relative * std::abs(*n.simulated);
+    n.details["u_input_shares"] = inputs.parts;
+  }
+  if (!row.input_uncertainty && !inputs.missing.empty()) {
+    n.details["inputs_not_evaluated"] = inputs.missing;
+  }
   if (n.measured) {
     const auto e = validation_error(*n.simulated, *n.measured,
                                     {.numerical = n.u_num, .input = n.u_input, .data = n.u_data},
@@ -32,7 +41,18 @@ RowNumbers difference(const Row& row, const Places& places) {
     n.u_val = e.uncertainty;
     n.lower = e.lower;
     n.upper = e.upper;
-    n.details["u_val_is_lower_bound"] = !e.complete || !simulated.studied;
+    n.details["u_val_is_lower_bound"] =
+        !e.complete || !simulated.studied || n.details.contains("inputs_not_evaluated");
+    // Which one is absent, so that a missing sigma is named and not taken for zero.
+    n.details["not_evaluated"] = nlohmann::json::array();
+    for (const auto& [name, known] :
+         {std::pair{"u_num", n.u_num.has_value() && simulated.studied},
+          {"u_input", n.u_input && !n.details.contains("inputs_not_evaluated")},
+          {"u_D", n.u_data.has_value()}}) {
+      if (!known) {
+        n.details["not_evaluated"].push_back(name);
+      }
+    }
   }
   return n;
 }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.hpp"
 #include "validation/compare/metric.hpp"
@@ -45,11 +46,12 @@ std::string finding_text(const Row& row, const RowNumbers& n) {
                        number_text(n.u_val, row.unit), n.details["trend"].get<std::string>());
   }
   if (n.error) {
-    return fmt::format("E = {}, u_val = {}{}", number_text(n.error, row.unit),
-                       number_text(n.u_val, row.unit),
-                       n.details.value("u_val_is_lower_bound", false)
-                           ? " (a lower bound: not every uncertainty is evaluated)"
-                           : "");
+    const auto absent = n.details.value("not_evaluated", std::vector<std::string>{});
+    return fmt::format(
+        "E = {}, u_val = {}{}", number_text(n.error, row.unit), number_text(n.u_val, row.unit),
+        absent.empty()
+            ? ""
+            : fmt::format(" (a lower bound: {} not fully evaluated)", fmt::join(absent, " and ")));
   }
   return fmt::format("S = {}", number_text(n.simulated, row.unit));
 }

@@ -31,7 +31,12 @@ InputTable simulated_table(SimulatedSource& s) {
                                  "Where `study` knows better, it is left out."})
       .text(s.study, {.name = "study",
                       .about = "Quantity of the studies (length, width, depth) whose relative "
-                               "uncertainty by spacing and numerical choices enters u_num."})
+                               "uncertainty by spacing and numerical choices enters u_num, and "
+                               "by uncertain inputs u_input."})
+      .texts(s.inputs, {.name = "inputs",
+                        .about = "\"name = 5 %\": inputs of the studies whose relative standard "
+                                 "uncertainty is another one here, with another material or beam; "
+                                 "0 %: it does not exist here."})
       .text(s.unit, {.name = "unit", .about = "Of these numbers (udunits2)."});
   return table;
 }
@@ -93,7 +98,7 @@ InputTable row_table(Row& row) {
       .quantity(row.input_uncertainty,
                 {.name = "input_uncertainty",
                  .unit = "1",
-                 .about = "u_input in the row's unit; left out: not evaluated.",
+                 .about = "u_input in the row's unit; left out: what the studies found.",
                  .minimum = 0})
       .text(row.figure, {.name = "figure", .about = "That shows it.", .required = true})
       .text(row.verdict, {.name = "verdict",
