@@ -5,13 +5,14 @@ FIGURE_FOLDER := $(WORK)/figures
 LOOK := $(addprefix pipelines/figures/,style.py artifact.py)
 FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg \
   fig04_powder_and_pool.svg fig05_length.svg fig06_flow.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg \
-  fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg)
+  fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg fig13_tornado.svg fig14_scatter.svg)
 
 $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg): \
     $(VERIFICATION) pipelines/figures/verification.py
 $(FIGURE_FOLDER)/fig04_powder_and_pool.svg: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 \
     pipelines/figures/sections.py
-$(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED)
+$(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED) \
+    $(COMPARISON)
 $(FIGURE_FOLDER)/fig06_flow.svg: $(WORK)/track_0wt/run.h5 pipelines/figures/sections.py
 $(FIGURE_FOLDER)/fig07_profiles.svg: $(LINESCANS)
 $(FIGURE_FOLDER)/fig08_history.svg: $(RESULTS)
@@ -20,7 +21,8 @@ $(FIGURE_FOLDER)/fig10_bare_plate.svg: $(WORK)/track_316L_175W_750/run.h5 \
     $(WORK)/track_316L_175W_750/result.json $(COMPARISON) \
     pipelines/figures/sections.py
 
-$(FIGURE_FOLDER)/fig11_resolution.svg $(FIGURE_FOLDER)/fig12_sensitivity.svg: $(STUDIES)
+$(addprefix $(FIGURE_FOLDER)/,fig11_resolution.svg fig12_sensitivity.svg fig13_tornado.svg): $(STUDIES)
+$(FIGURE_FOLDER)/fig14_scatter.svg: $(COMPARISON)
 
 # What a figure reads is what stands before its script here; the scripts take it in this order.
 $(FIGURE_FOLDER)/%.svg: pipelines/figures/%.py $(LOOK) | packages

@@ -21,7 +21,7 @@ def main():
     runs = {run["name"]: run for run in artifact.value(summary, "runs", given.studies)}
     rows = []
     for entry in artifact.value(summary, "series", given.studies):
-        if entry["kind"] != "resolution" and entry["base"] in runs:
+        if entry["kind"] in ("numerical", "physics") and entry["base"] in runs:
             rows += [(entry["kind"], runs[name], runs[entry["base"]]) for name in entry["runs"]
                      if name in runs and name != entry["base"]]
     figure, axes = plt.subplots(figsize=(style.PAGE_WIDTH, 1.2 + 0.28 * max(2, len(rows))))

@@ -383,9 +383,42 @@ TEST_F(Results, BiasAndScatterNeedTwoRowsOfAQuantity) {
   other.reference.where = {"power = 150", "speed = 300", "powder = 0"};
   table.rows.push_back(other);
   const auto found = statistics(run_table(table, places_));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0]["quantity"], "all");
+  EXPECT_EQ(found[1]["quantity"], "width");
+  EXPECT_EQ(found[1]["points"], 2);
+  EXPECT_TRUE(found[1]["scatter_is_noise"]);
+}
+
+TEST_F(Results, BiasAndScatterOfAllRowsTakeQuantitiesTogether) {
+  ComparisonTable table;
+  table.rows.push_back(width_row());
+  put("desk/track.json", {{"width_m", 127.7e-6 * 1.1}, {"depth_m", 58.8e-6 * 0.9}});
+  Row depth = width_row();
+  depth.name = depth.quantity = depth.reference.column = "depth";
+  depth.simulated.value = "/depth_m";
+  table.rows.push_back(depth);
+  const auto found = statistics(run_table(table, places_));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0]["points"], 2);
-  EXPECT_TRUE(found[0]["scatter_is_noise"]);
+  EXPECT_EQ(found[0]["quantity"], "all");
+  // RMS of 6.6 and 30 %, the measurements' own.
+  EXPECT_NEAR(found[0]["measured_scatter"].get<double>(), std::sqrt((0.066 * 0.066 + 0.09) / 2),
+              1e-12);
+}
+
+TEST_F(Results, ATrendMayFollowMeasuredNumbers) {
+  Row row = trend_row();
+  row.simulated.files = {"a.json", "b.json"};
+  row.reference = {.campaign = "ambench2022_03", .file = "tracks.csv", .column = "depth"};
+  row.reference.where = {"case = 0", "case = 3.1"};  // 139.7, 166.1 um
+  put("desk/a.json", {{"l", 100}, {"u", 3}});
+  put("desk/b.json", {{"l", 120}, {"u", 3}});
+  const auto found = run_row(row, places_);
+  EXPECT_EQ(found.verdict, "agrees");
+  EXPECT_EQ(found.numbers.details["reference"], json({139.7, 166.1}));
+  row.reference.where = {"case = 3.1", "case = 0"};
+  EXPECT_NE(run_row(row, places_).failure.find("does not rise from 166.1 to 139.7"),
+            std::string::npos);
 }
 
 TEST(Rules, NeedTheNumbersThatTheyCompare) {

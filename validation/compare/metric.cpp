@@ -101,10 +101,25 @@ RowNumbers curve(const Row& row, const Places& places) {
   return n;
 }
 
+/// What the reference says of the settings of a trend, in their order: a whole column (ranks, or
+/// lengths), or, where the row names conditions, one number for each of them.
+std::vector<double> measured_order(const Row& row, const Places& places) {
+  const Campaign campaign = reference_campaign(row, places);
+  const auto& file = campaign.file(row.reference.file);
+  const auto& numbers = file.column(row.reference.column).numbers;
+  if (row.reference.where.empty()) {
+    return numbers;
+  }
+  std::vector<double> picked;
+  for (const auto& condition : row.reference.where) {
+    picked.push_back(numbers.at(file.row({condition})));
+  }
+  return picked;
+}
+
 RowNumbers trend_of(const Row& row, const Places& places) {
   RowNumbers n;
-  const Campaign campaign = reference_campaign(row, places);
-  const auto& ranks = campaign.file(row.reference.file).column(row.reference.column).numbers;
+  const auto ranks = measured_order(row, places);
   if (ranks.size() != row.simulated.files.size()) {
     throw InputError(fmt::format("row \"{}\": {} files for {} ranks in {}: expected as many.",
                                  row.name, row.simulated.files.size(), ranks.size(),
@@ -113,19 +128,23 @@ RowNumbers trend_of(const Row& row, const Places& places) {
   std::vector<double> values, uncertainties;
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     if (i > 0 && !(ranks[i] > ranks[i - 1])) {
-      throw InputError(fmt::format("{}: the ranks do not rise: expected the settings in order.",
-                                   row.reference.file));
+      throw InputError(
+          fmt::format("row \"{}\": {} of {} does not rise from {} to {}: expected the settings in "
+                      "the order in which it does.",
+                      row.name, row.reference.column, row.reference.file, ranks[i - 1], ranks[i]));
     }
     const auto number = simulated_number(row, row.simulated.files[i], places);
     values.push_back(number.value);
     uncertainties.push_back(number.uncertainty.value_or(0));
   }
+  // u_input has no part here: an input that is off moves all settings alike.
   const auto found = trend(values, uncertainties, row.coverage);
   const auto& weakest = found.steps[found.weakest];
   n.simulated = weakest.rise;
   n.u_num = n.u_val = weakest.uncertainty;
   n.rises = found.result == TrendResult::rises;
   n.details["values"] = values;
+  n.details["reference"] = ranks;
   n.details["uncertainties"] = uncertainties;
   n.details["trend"] = found.result == TrendResult::rises   ? "rises"
                        : found.result == TrendResult::falls ? "falls"

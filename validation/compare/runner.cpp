@@ -62,7 +62,7 @@ void judge(RowResult& result, const Places& places) {
   if (row.waits_for == "simulation" && !simulated_there(row, places)) {
     result.verdict = "pending";
     result.finding = "there is no simulation of this row yet";
-    if (!row.reference.where.empty()) {
+    if (row.metric == "difference" && !row.reference.where.empty()) {
       const Datum measured = reference_number(row, places);
       result.numbers.measured = measured.value;
       result.numbers.u_data = measured.uncertainty;
@@ -207,8 +207,9 @@ json statistics(const std::vector<RowResult>& results) {
     const auto& n = result.numbers;
     if (result.row.metric == "difference" && n.simulated && n.measured && *n.simulated > 0 &&
         *n.measured > 0) {
-      quantities[result.row.quantity].push_back(
-          {*n.simulated, *n.measured, n.u_data.value_or(0) / *n.measured});
+      const RatioDatum datum{*n.simulated, *n.measured, n.u_data.value_or(0) / *n.measured};
+      quantities[result.row.quantity].push_back(datum);
+      quantities["all"].push_back(datum);
     }
   }
   json list = json::array();

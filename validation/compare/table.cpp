@@ -49,7 +49,8 @@ InputTable reference_table(ReferenceSource& r) {
       .text(r.file, {.name = "file", .about = "CSV file of the campaign.", .required = true})
       .text(r.column, {.name = "column", .about = "Column of the file.", .required = true})
       .texts(r.where, {.name = "where",
-                       .about = "Conditions \"column = value\" that pick one row of the file."})
+                       .about = "Conditions \"column = value\" that pick one row of the file; of a "
+                                "trend one for each setting, in its order."})
       .quantity(r.relative_uncertainty,
                 {.name = "relative_uncertainty",
                  .unit = "1",

@@ -34,7 +34,7 @@ struct SimulatedSource {
 struct ReferenceSource {
   std::string campaign = {};  ///< folder in data/experiments
   std::string file = {}, column = {};
-  /// Conditions that pick one row of the file; empty: all rows.
+  /// Conditions that pick one row of the file; of a trend one for each setting. Empty: all rows.
   std::vector<std::string> where = {};
   double relative_uncertainty = 0;  ///< standard, added to what the campaign declares
 };
