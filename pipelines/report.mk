@@ -47,20 +47,27 @@ REPORT := reports/validation.pdf
 REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)
 
 $(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(STUDIES) $(RESULTS) $(FILMED) \
-    $(CIRCUMSTANCES) $(WITNESS) pipelines/figures/track.py \
+    $(CIRCUMSTANCES) $(WITNESS) pipelines/figures/track.py $(wildcard validation/results/paper/estimate.json) \
     $(wildcard reports/template/*) $(wildcard pipelines/report/*.py) pipelines/figures/artifact.py
 	@$(STAGE) 'report' $(PYTHON) pipelines/report/build_report.py --work $(WORK) --figures $(FIGURE_FOLDER) \
 	  --verification $(VERIFICATION) --comparison $(COMPARISON) --studies $(STUDIES) --circumstances $(CIRCUMSTANCES) \
 	  --witness $(WITNESS) --template reports/template --output reports/validation
 
+# What the report is made of, for programs: files, checksums, programs and what each was made from.
+CRATE := reports/ro-crate-metadata.json
+$(CRATE): $(REPORT) pipelines/report/ro_crate.py
+	@$(STAGE) 'research object' $(PYTHON) pipelines/report/ro_crate.py $(VERIFICATION) $(COMPARISON) $(STUDIES) \
+	  $(wildcard $(WORK)/powder_*/powder.h5) $(RESULTS) $(FILMED) $(LINESCANS) --report $(REPORT:.pdf=) \
+	  --figures $(FIGURE_FOLDER) --circumstances $(CIRCUMSTANCES)
+
 .PHONY: figures report validate readme-picture
 figures: $(FIGURES)
 	@echo 'The figures are in $(FIGURE_FOLDER)/.'
 
-report: $(REPORT)
+report: $(REPORT) $(CRATE)
 	@echo 'The report is $(REPORT), and reports/validation.html for a browser.'
 
-validate: $(REPORT)
+validate: $(REPORT) $(CRATE)
 	@if [ "$$(stat -c %y $(REPORT))" = '$(REPORT_BEFORE)' ]; then \
 	  echo 'nothing to do: $(REPORT) is up to date'; fi
 	@$(PYTHON) pipelines/report/results_table.py --verification $(VERIFICATION) --comparison $(COMPARISON) \
