@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "validation/compare/input_share.hpp"
+#include "validation/compare/recordings.hpp"
 #include "validation/metrics/trend.hpp"
 #include "validation/metrics/validation_error.hpp"
 
@@ -20,6 +21,10 @@ RowNumbers difference(const Row& row, const Places& places) {
   n.measured = measured.value;
   n.u_data = measured.uncertainty;
   n.reference_pending = !measured.value;
+  if (!row.reference.recordings.empty()) {
+    const auto recorded = recorded_quantity(recordings(row, places), row.reference.column);
+    n.details["u_D_parts"] = {{"scatter", recorded.scatter}, {"systematic", recorded.systematic}};
+  }
   const auto simulated = simulated_number(row, row.simulated.file, places);
   n.simulated = simulated.value;
   n.u_num = simulated.uncertainty;

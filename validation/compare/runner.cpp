@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "validation/compare/metric.hpp"
+#include "validation/compare/recordings.hpp"
 #include "validation/compare/rule.hpp"
 #include "validation/metrics/log_ratio.hpp"
 
@@ -32,6 +33,12 @@ std::string source_text(const Row& row, const Places& places) {
     return !row.simulated.verification_case.empty() ? "exact solution"
            : row.metric == "number"                 ? "asked of every run"
                                                     : "conservation law";
+  }
+  if (!row.reference.recordings.empty()) {
+    const auto paths = recordings(row, places);
+    const bool synthetic = recorded_quantity(paths, row.reference.column).synthetic;
+    return fmt::format("{}{} recording{} of {}: {}", synthetic ? "SYNTHETIC: " : "", paths.size(),
+                       paths.size() > 1 ? "s" : "", row.reference.campaign, row.reference.column);
   }
   const Campaign campaign = reference_campaign(row, places);
   const auto& file = campaign.file(row.reference.file);
@@ -62,7 +69,8 @@ void judge(RowResult& result, const Places& places) {
   if (row.waits_for == "simulation" && !simulated_there(row, places)) {
     result.verdict = "pending";
     result.finding = "there is no simulation of this row yet";
-    if (row.metric == "difference" && !row.reference.where.empty()) {
+    if (row.metric == "difference" &&
+        !(row.reference.where.empty() && row.reference.recordings.empty())) {
       const Datum measured = reference_number(row, places);
       result.numbers.measured = measured.value;
       result.numbers.u_data = measured.uncertainty;

@@ -46,8 +46,15 @@ InputTable reference_table(ReferenceSource& r) {
   table
       .text(r.campaign,
             {.name = "campaign", .about = "Folder in data/experiments.", .required = true})
-      .text(r.file, {.name = "file", .about = "CSV file of the campaign.", .required = true})
-      .text(r.column, {.name = "column", .about = "Column of the file.", .required = true})
+      .text(r.file, {.name = "file", .about = "CSV file of the campaign."})
+      .texts(
+          r.recordings,
+          {.name = "recordings",
+           .about = "Instead of `file`: summary.json of meltproof-thermography of each track, in "
+                    "the campaign's folder."})
+      .text(r.column, {.name = "column",
+                       .about = "Column of the file; of recordings length or depth.",
+                       .required = true})
       .texts(r.where, {.name = "where",
                        .about = "Conditions \"column = value\" that pick one row of the file; of a "
                                 "trend one for each setting, in its order."})
@@ -182,6 +189,13 @@ void check(const ComparisonTable& table, const std::filesystem::path& path) {
     }
     if (s.verification_case.empty() && s.value.empty()) {
       refuse(row, "[row.simulated] names no value: expected a JSON pointer");
+    }
+    const auto& r = row.reference;
+    if (row.has_reference && r.file.empty() == r.recordings.empty()) {
+      refuse(row, "expected exactly one of file and recordings under [row.reference]");
+    }
+    if (!r.recordings.empty() && (row.metric != "difference" || !r.where.empty())) {
+      refuse(row, "recordings give one number: expected the metric \"difference\" and no `where`");
     }
     if (row.metric != "error_norm" && row.metric != "number" && !row.has_reference) {
       refuse(row, fmt::format("the metric \"{}\" needs a [row.reference]", row.metric));

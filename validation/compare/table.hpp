@@ -36,6 +36,8 @@ struct ReferenceSource {
   std::string file = {}, column = {};
   /// Conditions that pick one row of the file; of a trend one for each setting. Empty: all rows.
   std::vector<std::string> where = {};
+  /// Instead of file: summary.json of each recorded track, in the campaign's folder.
+  std::vector<std::string> recordings = {};
   double relative_uncertainty = 0;  ///< standard, added to what the campaign declares
 };
 
