@@ -143,6 +143,13 @@ def count(number):
     return "" if number is None else thousands(number)
 
 
+def is_old_track(made, last_commit, root):
+    """Whether an artifact is a track that other code than that of the sources made. Tables are made anew whenever Make
+    finds them old; of a program built from uncommitted sources it cannot be told."""
+    return (made["program"] == "meltproof-solve" and "dirty" not in made["revision"]
+            and code_differs(made["revision"], last_commit, root))
+
+
 def read_estimate(path):
     """What a run at the paper's resolution would cost; None if nobody has estimated it."""
     if not Path(path).is_file():
@@ -197,8 +204,7 @@ def report_facts(given):
     artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.studies, given.comparison)
     facts = read_json(given.circumstances)
     for made in artifacts:
-        # Only what runs a track grows old with its code; tables are made anew whenever Make finds them old.
-        made["stale"] = made["program"] == "meltproof-solve" and code_differs(made["revision"], facts["last_commit"], root)
+        made["stale"] = is_old_track(made, facts["last_commit"], root)
     revisions = sorted({made["revision"] for made in artifacts})
     names = {**libraries, **facts["python"]}
     return {

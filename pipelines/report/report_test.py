@@ -14,6 +14,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+import build_report  # noqa: E402
 import errata_numbers  # noqa: E402
 import findings  # noqa: E402
 import numbering  # noqa: E402
@@ -83,6 +84,14 @@ class Stale(unittest.TestCase):
         self.assertFalse(study_table.is_stale({**run, "inputs": []}, "synthetic", ROOT))
         self.assertTrue(study_table.is_stale({**run, "inputs": []}, "no-such-revision", ROOT))
         self.assertTrue(study_table.is_stale({"revision": "a-dirty", "inputs": []}, "a", ROOT))
+
+    def test_a_track_of_other_code_is_stale_and_nothing_else(self):
+        def old(program, revision):
+            return build_report.is_old_track({"program": program, "revision": revision}, "synthetic", ROOT)
+        self.assertTrue(old("meltproof-solve", "no-such-revision"))
+        self.assertFalse(old("meltproof-solve", "synthetic"))
+        self.assertFalse(old("meltproof-solve", "no-such-revision-dirty"))
+        self.assertFalse(old("meltproof-compare", "no-such-revision"))
 
     def test_other_code_with_the_same_witness_makes_nothing_stale(self):
         run = {"revision": "synthetic", "inputs": [], "witness": "same"}
