@@ -2,6 +2,7 @@
 """Which uncertain input matters most: relative uncertainty of length, width and depth, in both directions."""
 
 import argparse
+import textwrap
 
 import artifact
 import matplotlib.pyplot as plt
@@ -22,10 +23,8 @@ def swing(effect):
 
 
 def label(entry):
-    known = entry["input"]
-    if not known["value_text"]:
-        return f"{entry['title']}\n(another law)"
-    return f"{entry['title']}\n({known['value_text']}, u {known['u_text']})"
+    known, title = entry["input"], textwrap.fill(entry["title"], 20)
+    return f"{title}\n(another law)" if not known["value_text"] else f"{title}\n({known['value_text']}, u {known['u_text']})"
 
 
 def plot(axes, inputs, extent):
@@ -42,7 +41,6 @@ def plot(axes, inputs, extent):
             axes.text(abs(more), place, " *", va="center", ha="left", fontsize=10, fontweight="bold")
     axes.axvline(0, color="black", linewidth=0.8)
     axes.set_yticks(range(len(order)), [label(entry) for entry in order], fontsize=6)
-    axes.margins(x=0.12)
     axes.grid(axis="y", visible=False)
     first = order[-1]
     return f"{extent}: {first['title'].lower()} first, {100 * first['quantities'][extent]['relative_u']:.2g} %"
@@ -60,14 +58,17 @@ def main():
     there = {extent: [entry for entry in declared if not entry["missing"]
                       and entry["quantities"][extent]["relative_u"] is not None] for extent in EXTENTS}
     missing = [entry["title"].lower() for entry in declared if entry not in there["length"]]
+    largest = max((100 * entry["quantities"][extent]["relative_u"] for extent in EXTENTS for entry in there[extent]),
+                  default=1.0)
     rows = max(len(found) for found in there.values())
-    figure, panels = plt.subplots(1, 3, figsize=(style.PAGE_WIDTH, 1.1 + 0.34 * max(3, rows)))
+    figure, panels = plt.subplots(1, 3, figsize=(style.PAGE_WIDTH, 1.1 + 0.4 * max(3, rows)))
     sentences = []
     for axes, extent, letter in zip(panels, EXTENTS, "abc"):
         axes.set_title(f"{letter}  {extent.capitalize()}")
         axes.set_xlabel("change [%]")
         if there[extent]:
             sentences.append(plot(axes, there[extent], extent))
+            axes.set_xlim(-1.25 * largest, 1.25 * largest)  # one scale for all three
         else:
             axes.set_yticks([])
             axes.text(0.5, 0.5, "not run yet:\nmake studies", transform=axes.transAxes, ha="center", va="center",

@@ -128,6 +128,7 @@ class Figures(unittest.TestCase):
         self.assertIn("length: synthetic absorptivity first, 10 %", words)
         self.assertIn("Without runs so far: synthetic radius.", words)
         self.assertIn("the steeper slope counts (synthetic slope)", words)
+        self.assertEqual(len(re.findall(r"<!-- +\* -->", output.read_text())), 3)  # its mark, in each panel
 
     def test_the_papers_figure_5_completes_itself_once_its_rows_hold_numbers(self):
         """The lengths are synthetic: 200, 210 and 260 um are nobody's measurement."""
