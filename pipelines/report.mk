@@ -57,7 +57,7 @@ $(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(
 CRATE := reports/ro-crate-metadata.json
 $(CRATE): $(REPORT) pipelines/report/ro_crate.py
 	@$(STAGE) 'research object' $(PYTHON) pipelines/report/ro_crate.py $(VERIFICATION) $(COMPARISON) $(STUDIES) \
-	  $(wildcard $(WORK)/powder_*/powder.h5) $(RESULTS) $(FILMED) $(LINESCANS) --report $(REPORT:.pdf=) \
+	  $(POWDER_TRACKS:%=$(WORK)/powder_%/powder.h5) $(RESULTS) $(FILMED) $(LINESCANS) --report $(REPORT:.pdf=) \
 	  --figures $(FIGURE_FOLDER) --circumstances $(CIRCUMSTANCES)
 
 .PHONY: figures report validate readme-picture

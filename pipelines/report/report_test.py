@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The report: facts of its errata, equal bytes for equal artifacts, and what it says when something is wrong."""
 
-import hashlib
 import json
 import os
 import re
@@ -16,8 +15,6 @@ ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 import build_report  # noqa: E402
 import errata_numbers  # noqa: E402
-import findings  # noqa: E402
-import numbering  # noqa: E402
 import rosenthal  # noqa: E402
 import study_table  # noqa: E402
 import synthetic_artifacts  # noqa: E402
@@ -100,146 +97,6 @@ class Stale(unittest.TestCase):
         self.assertTrue(study_table.is_stale({**run, "witness": None}, "no-such-revision", ROOT, None))
         changed = {**run, "inputs": [{"path": "Makefile", "sha256": "0" * 64}]}
         self.assertTrue(study_table.is_stale(changed, "no-such-revision", ROOT, "same"))
-
-
-class Findings(unittest.TestCase):
-    """Every run in here is synthetic."""
-
-    U = {"length": 0.02, "width": 0.03, "depth": None}
-
-    def run_of(self, name, length, clumped=0.0):
-        return {"name": name, "title": f"synthetic {name}", "length_um": length, "width_um": 100.0, "depth_um": 50.0,
-                "clumped_fraction": clumped}
-
-    def studies(self, *runs):
-        return {"runs": runs, "inputs": [], "quantities": {extent: {"relative_u": u} for extent, u in self.U.items()}}
-
-    def test_conduction_alone_is_what_an_independent_calculation_gave(self):
-        by = findings.conduction_of_content(ROOT, 0.05)
-        for part, percent in (("liquidus", 3), ("absorptivity", -4), ("conductivity", -15), ("all", -15)):
-            self.assertAlmostEqual(100 * by[part], percent, delta=0.6, msg=part)
-
-    def test_an_effect_is_judged_by_the_numerical_uncertainty(self):
-        base = self.run_of("base", 300.0)
-        said = findings.effect(self.run_of("hot", 330.0), base, self.U)
-        self.assertIn("length 300 to 330 um, +10.0 % (beyond 2 u_num)", said)
-        self.assertIn("width 100 to 100 um, +0.0 % (within 2 u_num)", said)
-        self.assertTrue(said.endswith("depth 50 to 50 um, +0.0 %."), said)
-
-    def test_a_run_that_clumps_does_not_count_and_one_that_is_missing_is_named(self):
-        studies = self.studies(self.run_of("base", 300.0), self.run_of("torn", 900.0, 0.3))
-        found = findings.of_runs("?", 1, "base", ["torn", "absent"], studies)
-        self.assertIn("its melt clumps (30 %", found["sentences"][0])
-        self.assertNotIn("900", found["sentences"][0])
-        self.assertEqual(found["missing"], ["absent"])
-        self.assertEqual(findings.of_runs("?", 1, "nobody", ["torn"], studies)["sentences"], [])
-
-    def test_the_rise_is_said_by_definition_with_its_verdict(self):
-        def row(name, values, trend, verdict):
-            return {"name": name, "S": values[1] - values[0], "u_val": 3.0, "coverage": 2, "verdict": verdict,
-                    "details": {"values": values, "uncertainties": [2.0, 2.0, 2.0], "trend": trend}}
-        rows = [row("fig5_trend_pool", [300.0, 301.0, 299.0], "undecided", "differs"),
-                row("fig5_trend_any_liquid", [300.0, 320.0, 350.0], "rises", "agrees")]
-        said = findings.rise_of_length(rows, "no/work", ROOT)
-        self.assertIn("so this differs.", said["sentences"][0])
-        self.assertIn("rises beyond k u at every step", said["sentences"][1])
-        self.assertIn("so this agrees.", said["sentences"][1])
-        self.assertIn("19 um at 1 wt%, 51 um at 5 wt%", said["sentences"][2])
-        self.assertEqual(len(findings.rise_of_length([], "no/work", ROOT)["missing"]), 2)
-
-
-class Numbering(unittest.TestCase):
-    PAGE = ('<nav id="contents"></nav><section id="one"><h2>First</h2>[[t]] [[two]]</section>\n<section id="two">\n'
-            '<h2>Second</h2><table><caption id="t">words</caption></table><figure id="f">x<figcaption>y</figcaption>'
-            "</figure></section>")
-
-    def test_sections_tables_and_figures_are_numbered_and_linked(self):
-        page = numbering.number(self.PAGE)
-        self.assertIn('<a href="#t">Table 1</a> <a href="#two">Section 2</a>', page)
-        self.assertIn("<strong>Table 1.</strong> words", page)
-        self.assertIn("<figcaption><strong>Figure 1.</strong> y", page)
-        self.assertIn('<li><a href="#two">2&ensp;Second</a></li>', page)
-
-    def test_a_link_to_nothing_is_refused(self):
-        with self.assertRaises(numbering.MissingArtifact):
-            numbering.number(self.PAGE + "[[nowhere]]")
-
-
-class Crate(unittest.TestCase):
-    """What the RO-Crate 1.1 specification requires of its root, and of the entities of data and provenance."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.root = Path(cls.folder.name)
-        synthetic_artifacts.everything(cls.root)
-        for suffix in (".pdf", ".html"):
-            (cls.root / f"report{suffix}").write_text("synthetic")
-        (cls.root / "figures").mkdir()
-        (cls.root / "figures/fig.svg").write_text("<svg/>")
-        (cls.root / "figures/fig.json").write_text('{"title": "synthetic figure"}')
-        (cls.root / "circumstances.json").write_text('{"profile": "smoke", "spacing": "15 um", "last_commit": "abc"}')
-        # One artifact that was made from another one of the crate, and from a file outside of it.
-        studies = json.loads((cls.root / "studies.json").read_text())
-        sum_ = hashlib.sha256((cls.root / "verification.json").read_bytes()).hexdigest()
-        studies["provenance"] = {**studies["provenance"], "inputs": [
-            {"path": "verification.json", "sha256": sum_}, {"path": "data/x.toml", "sha256": "f" * 64}]}
-        (cls.root / "studies.json").write_text(json.dumps(studies))
-        cls.first = cls.write()
-        cls.graph = {entity["@id"]: entity for entity in json.loads(cls.first)["@graph"]}
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
-    @classmethod
-    def write(cls):
-        done = run(HERE / "ro_crate.py", cls.root / "studies.json", cls.root / "verification.json",
-                   cls.root / "work/powder_5wt/powder.h5", "--report", cls.root / "report", "--figures", cls.root / "figures",
-                   "--circumstances", cls.root / "circumstances.json", "--base", cls.root)
-        assert done.returncode == 0, done.stderr
-        return (cls.root / "ro-crate-metadata.json").read_bytes()
-
-    def test_the_descriptor_and_the_root_are_as_the_specification_asks(self):
-        document = json.loads(self.first)
-        self.assertIn("https://w3id.org/ro/crate/1.1/context", document["@context"])
-        self.assertEqual(len(self.graph), len(document["@graph"]), "an @id is described twice")
-        descriptor = self.graph["ro-crate-metadata.json"]
-        self.assertEqual(descriptor["@type"], "CreativeWork")
-        self.assertEqual(descriptor["about"], {"@id": "./"})
-        self.assertEqual(descriptor["conformsTo"], {"@id": "https://w3id.org/ro/crate/1.1"})
-        root = self.graph["./"]
-        self.assertEqual(root["@type"], "Dataset")
-        self.assertRegex(root["datePublished"], r"^\d{4}-\d{2}-\d{2}T")
-        for key in ("name", "description", "license", "author"):
-            self.assertTrue(root[key], key)
-        self.assertEqual(self.graph[root["author"]["@id"]]["@type"], "Organization")
-        self.assertIn(root["license"]["@id"], self.graph)
-
-    def test_every_file_is_a_part_of_the_root_lies_there_and_has_its_checksum(self):
-        parts = {part["@id"] for part in self.graph["./"]["hasPart"]}
-        files = {name: entity for name, entity in self.graph.items() if entity["@type"] == "File"}
-        self.assertEqual(parts, set(files))
-        self.assertIn("work/powder_5wt/powder.h5", files)
-        for name, entity in files.items():
-            self.assertFalse(name.startswith(("/", "..")), name)
-            self.assertEqual(hashlib.sha256((self.root / name).read_bytes()).hexdigest(), entity["sha256"], name)
-            self.assertTrue(entity["encodingFormat"], name)
-
-    def test_actions_name_their_program_what_they_read_and_what_they_made(self):
-        actions = [entity for entity in self.graph.values() if entity["@type"] == "CreateAction"]
-        self.assertEqual(len(actions), 4)
-        for action in actions:
-            self.assertEqual(self.graph[action["instrument"]["@id"]]["@type"], "SoftwareApplication")
-            results = action["result"] if isinstance(action["result"], list) else [action["result"]]
-            for reference in [*action["object"], *results, action["agent"]]:
-                self.assertIn(reference["@id"], self.graph)
-        read = self.graph["#making-studies.json"]["object"]
-        self.assertEqual([reference["@id"] for reference in read], ["verification.json", "#input-" + 16 * "f"])
-
-    def test_no_person_is_named_and_equal_files_give_equal_bytes(self):
-        self.assertNotIn("Person", {entity["@type"] for entity in self.graph.values()})
-        self.assertEqual(self.write(), self.first)
 
 
 class Report(unittest.TestCase):
