@@ -68,7 +68,7 @@ class Walk(unittest.TestCase):
 
             program, *arguments = command.split()
             small = ["--set", "domain.depth=140 um", "--set", "domain.width=240 um", "--set", "domain.before=80 um",
-                     "--set", "domain.behind=80 um", "--quiet"]
+                     "--set", "domain.behind=80 um", "--set", "laser.exposure=150 us", "--quiet"]
             made = subprocess.run([str(BIN / program), *arguments, *small], capture_output=True, text=True, cwd=root)
             self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
 
