@@ -94,6 +94,12 @@ Input declare(TrackCase& t) {
                                 .required = true,
                                 .minimum = 1e-6,
                                 .maximum = 1e-3})
+      .text(t.absorption,
+            {.name = "absorption",
+             .about = "constant: what the metal first meets absorbs its share, the rest is gone. "
+                      "ray_traced: reflected light is followed, so that a depression absorbs more "
+                      "(errata 19).",
+             .choices = {"constant", "ray_traced"}})
       .text(t.radius_definition, {.name = "radius_definition",
                                   .about = "What the radius means; for a Gaussian beam both are "
                                            "the same length. The paper does not say (errata 16).",
@@ -271,7 +277,8 @@ Model make_model(const TrackCase& t, const Domain& domain) {
                       .y = 0,
                       .exposure = t.exposure,
                       .incidence = t.incidence_angle,
-                      .azimuth = t.incidence_azimuth};
+                      .azimuth = t.incidence_azimuth,
+                      .reflections = t.absorption == "ray_traced"};
   model.surface_loss = SurfaceLossSettings{.evaporation = t.evaporation,
                                            .radiation = t.radiation,
                                            .ambient_temperature = t.ambient_temperature,

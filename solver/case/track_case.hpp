@@ -33,6 +33,7 @@ struct TrackCase {
   double power = 175, beam_radius = 40e-6, speed = 0.375, exposure = 1.04e-3;
   std::string radius_definition = "1/e2";  ///< what beam_radius means: "1/e2" or "D4sigma/2"
   double absorptivity = -1;                ///< of the base material; negative: the material's own
+  std::string absorption = "constant";     ///< or "ray_traced": reflected light is followed
   double incidence_angle = 0, incidence_azimuth = 0;  ///< rad
 
   double before = 150e-6, behind = 150e-6, width = 400e-6, depth = 200e-6;

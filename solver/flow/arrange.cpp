@@ -56,6 +56,17 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
     halo_.set_roles(role_);
   }
   std::sort(wall_.begin(), wall_.end());
+  if (!halo_.empty()) {
+    const auto divide = [&](const std::vector<std::uint32_t>& members, Parts& parts) {
+      parts.copied.clear();
+      parts.inner.clear();
+      for (std::uint32_t k = 0; k < members.size(); ++k) {
+        (halo_.copied(members[k]) ? parts.copied : parts.inner).push_back(k);
+      }
+    };
+    divide(liquid_, liquid_parts_);
+    divide(wall_, wall_parts_);
+  }
 }
 
 /// Slots in the order of the particles: melt and walls, images of them, the void, and behind it

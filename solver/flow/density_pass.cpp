@@ -76,7 +76,7 @@ void FreeSurfaceFlow::densities(Particles& particles, double dt) {
       !relax ? 0
              : settings_.sound_speed / (settings_.density_relaxation * kernel_.smoothing_length);
   const double at_centre = kernel_.value(0.0);
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  const auto advance = [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member], particle = liquid_[member];
     const MotionRecord& own = all[i];
     const DensityRecord& gradient = gradients[i];
@@ -122,9 +122,10 @@ void FreeSurfaceFlow::densities(Particles& particles, double dt) {
                                           own.density, reference);
     }
     particles.density[particle] += dt * rate;
-  });
-  halo_.exchange(
+  };
+  compute_and_exchange(
       Halo::liquid, 4,
+      [&](Part part) { for_each_of(liquid_parts_, part, liquid_.size(), advance); },
       [&](std::uint32_t i, double* out) {
         out[0] = particles.density[i];
         std::copy_n(colour_[slot_[i]].begin(), 3, out + 1);

@@ -8,9 +8,9 @@
 
 namespace meltproof::solver {
 
-void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
+void FreeSurfaceFlow::walls_and_missing_gradients(const std::vector<Ghost>& ghosts) {
   const ForceRecord* all = force_.data();
-  for_each_particle(wall_slot_.size(), [&](std::size_t member) {
+  const auto feel = [&](std::size_t member) {
     const std::uint32_t i = wall_slot_[member];
     const ForceRecord& own = all[i];
     WallSums<Lane> sums;
@@ -38,9 +38,15 @@ void FreeSurfaceFlow::walls(const std::vector<Ghost>& ghosts) {
     record.vx = wall_velocity(0, sum.velocity_x, sum.weight);
     record.vy = wall_velocity(0, sum.velocity_y, sum.weight);
     record.vz = wall_velocity(0, sum.velocity_z, sum.weight);
-  });
-  halo_.exchange(
+  };
+  compute_and_exchange(
       Halo::wall, 4,
+      [&](Part part) {
+        for_each_of(wall_parts_, part, wall_.size(), feel);
+        if (part == Part::inner) {
+          missing_gradients();  // of the melt's own pressure alone: needs no wall
+        }
+      },
       [&](std::uint32_t i, double* out) {
         const ForceRecord& record = force_[slot_[i]];
         out[0] = record.pressure;

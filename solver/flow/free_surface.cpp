@@ -105,8 +105,7 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
       image.vz = v[2];
     }
   });
-  walls(ghosts);
-  missing_gradients();
+  walls_and_missing_gradients(ghosts);
   forces(particles);
 }
 

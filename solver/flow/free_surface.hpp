@@ -2,6 +2,7 @@
 // Weakly compressible flow of the melt with a free surface: what is not metal has no particles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -210,7 +211,7 @@ class FreeSurfaceFlow {
   void curvatures(const std::vector<Ghost>& ghosts);
   void curvatures_below();
   void missing_gradients();
-  void walls(const std::vector<Ghost>& ghosts);
+  void walls_and_missing_gradients(const std::vector<Ghost>& ghosts);
   void forces(const Particles& particles);
   /// Calls visit(slot, ghost, slot of its source) for each image of melt and walls.
   template <class Visit>
@@ -221,6 +222,41 @@ class FreeSurfaceFlow {
     }
   }
 
+  /// Members of liquid_ or wall_, by their place there: those of which other ranks keep copies, and
+  /// the others. Alone both stay empty.
+  struct Parts {
+    std::vector<std::uint32_t> copied, inner;
+  };
+  enum class Part { copied, inner };
+  /// Runs body(place) for one part of n members; alone, all of them are inner ones.
+  template <class Body>
+  void for_each_of(const Parts& parts, Part part, std::size_t n, const Body& body) {
+    if (halo_.empty()) {
+      for_each_particle(part == Part::inner ? n : 0, body);
+      return;
+    }
+    const auto& members = part == Part::inner ? parts.inner : parts.copied;
+    // A message moves on only when this rank looks after it.
+    const std::size_t chunk = members.size() / 4 + 1;
+    for (std::size_t from = 0; from < members.size(); from += chunk) {
+      for_each_particle(std::min(chunk, members.size() - from),
+                        [&](std::size_t k) { body(members[from + k]); });
+      if (part == Part::inner) {
+        halo_.progress();
+      }
+    }
+  }
+  /// Computes what others keep copies of first, so that it is on the way while the rest is
+  /// computed: compute(part) for both.
+  template <class Compute, class Get, class Put>
+  void compute_and_exchange(Halo::Group group, std::size_t width, const Compute& compute,
+                            const Get& get, const Put& put) {
+    compute(Part::copied);
+    halo_.begin(group, width, get);
+    compute(Part::inner);
+    halo_.finish(put);
+  }
+
   FlowSettings settings_;
   QuinticSpline kernel_;
   double spacing_;
@@ -228,6 +264,7 @@ class FreeSurfaceFlow {
   Halo& halo_;
   // Particles of this rank, and their slots in the same order.
   std::vector<std::uint32_t> liquid_, wall_, liquid_slot_, wall_slot_;
+  Parts liquid_parts_, wall_parts_;
   std::vector<std::uint32_t> liquid_copies_, wall_copies_;  // particles of others
   std::vector<std::uint8_t> role_;          // of every particle: 0 neither, 1 liquid, 2 wall
   std::vector<std::uint32_t> slot_;         // of every particle, or nowhere

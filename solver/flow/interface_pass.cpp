@@ -61,10 +61,14 @@ void FreeSurfaceFlow::leave_disorder_out() {
     }
     disorder_[i] = sum_lanes(found) > 0 ? 0 : 1;
   };
-  for_each_particle(liquid_.size(), [&](std::size_t k) { look(liquid_slot_[k]); });
-  for_each_particle(wall_.size(), [&](std::size_t k) { look(wall_slot_[k]); });
-  halo_.exchange(
-      Halo::metal_near_melt, 1, [&](std::uint32_t i, double* out) { *out = disorder_[slot_[i]]; },
+  compute_and_exchange(
+      Halo::metal_near_melt, 1,
+      [&](Part part) {
+        for_each_of(liquid_parts_, part, liquid_.size(),
+                    [&](std::size_t k) { look(liquid_slot_[k]); });
+        for_each_of(wall_parts_, part, wall_.size(), [&](std::size_t k) { look(wall_slot_[k]); });
+      },
+      [&](std::uint32_t i, double* out) { *out = disorder_[slot_[i]]; },
       [&](std::uint32_t i, const double* in) { disorder_[slot_[i]] = *in > 0 ? 1 : 0; });
   for_each_particle(particle_.size(), [&](std::size_t s) {
     if (disorder_[s] != 0) {
@@ -113,7 +117,7 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
 void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts) {
   const SurfaceRecord* all = surface_.data();
   const double h = kernel_.smoothing_length, outermost = outermost_depth_ * h;
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  const auto bend_of = [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     area_[i] = pull_[i] = curvature_[i] = 0;
@@ -153,9 +157,10 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts) {
     if (own.depth <= outermost) {
       outer_curvature_[i] = {pull_[i] * curvature_[i], pull_[i]};
     }
-  });
-  halo_.exchange(
+  };
+  compute_and_exchange(
       Halo::liquid, 2,
+      [&](Part part) { for_each_of(liquid_parts_, part, liquid_.size(), bend_of); },
       [&](std::uint32_t i, double* out) {
         out[0] = outer_curvature_[slot_[i]].curvature;
         out[1] = outer_curvature_[slot_[i]].weight;

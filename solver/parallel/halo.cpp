@@ -23,6 +23,12 @@ void Halo::set_roles(std::span<const std::uint8_t> role) {
     });
     return some;
   };
+  copied_.assign(role.size(), 0);
+  for (const Peer& peer : peers_) {
+    for (const std::uint32_t i : peer.send) {
+      copied_[i] = role[i] != 0 ? 1 : 0;
+    }
+  }
   for (const Group group : {liquid, wall, metal_near_melt}) {
     plans_[group].clear();
     for (const Peer& peer : peers_) {
@@ -31,9 +37,16 @@ void Halo::set_roles(std::span<const std::uint8_t> role) {
   }
 }
 
-void Halo::swap_buffers() {
+struct Halo::Requests {
+  std::vector<MPI_Request> all;
+};
+
+Halo::Halo(const Ranks& ranks) : ranks_(ranks), requests_(std::make_shared<Requests>()) {}
+
+void Halo::post() {
   constexpr int tag = 2;
-  std::vector<MPI_Request> requests;
+  std::vector<MPI_Request>& requests = requests_->all;
+  requests.clear();
   for (std::size_t p = 0; p < peers_.size(); ++p) {
     if (!in_[p].empty()) {
       MPI_Irecv(in_[p].data(), static_cast<int>(in_[p].size()), MPI_DOUBLE, peers_[p].rank, tag,
@@ -46,8 +59,17 @@ void Halo::swap_buffers() {
       numbers_ += out_[p].size();
     }
   }
+}
+
+void Halo::progress() {
+  int done = 0;
+  MPI_Testall(static_cast<int>(requests_->all.size()), requests_->all.data(), &done,
+              MPI_STATUSES_IGNORE);
+}
+
+void Halo::wait() {
   const double began = MPI_Wtime();
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  MPI_Waitall(static_cast<int>(requests_->all.size()), requests_->all.data(), MPI_STATUSES_IGNORE);
   waited_ += MPI_Wtime() - began;
 }
 

@@ -8,6 +8,7 @@
 #include "solver/particles/loops.hpp"
 #include "solver/step/engine.hpp"
 #include "solver/step/stopwatch.hpp"
+#include "solver/terms/reflection.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -159,10 +160,14 @@ double Engine::step(double until) {
   beam_ = {};
   if (model_.laser && model_.laser->on(time_)) {
     // The beam stands where it is in the middle of the step.
-    beam_ = irradiate(
-        *model_.laser, time_ + dt / 2, surface_,
-        [&](std::uint32_t i) { return mixture_.absorptivity(particles_.concentration[i]); },
-        source_, ranks());
+    const auto absorptivity = [&](std::uint32_t i) {
+      return mixture_.absorptivity(particles_.concentration[i]);
+    };
+    beam_ =
+        model_.laser->reflections
+            ? irradiate_with_reflections(*model_.laser, time_ + dt / 2, surface_, particles_,
+                                         kernel_, absorptivity, source_)
+            : irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity, source_, ranks());
   }
   watch.lap(times_.surface);
   if (model_.conduction) {

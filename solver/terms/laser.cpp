@@ -102,7 +102,7 @@ Footprint inclined_footprint(const Laser& laser, double x, const SurfaceColumns&
 
 LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& columns,
                       const std::function<double(std::uint32_t)>& absorptivity,
-                      std::vector<double>& power, const Ranks& ranks) {
+                      std::vector<double>& power, const Ranks& ranks, std::vector<FirstHit>* hits) {
   LaserBudget budget;
   if (!laser.on(time) || laser.power <= 0) {
     return budget;
@@ -129,6 +129,11 @@ LaserBudget irradiate(const Laser& laser, double time, const SurfaceColumns& col
       met[column] = 1;
       absorbed[column] = absorptivity(top) * (laser.power * f.share[column]);
       power[top] += absorbed[column];
+      if (hits != nullptr) {
+        const double axis_x = columns.lower_x + (static_cast<double>(ix) + 0.5) * columns.width;
+        const double axis_y = columns.lower_y + (static_cast<double>(iy) + 0.5) * columns.width;
+        hits->push_back({top, axis_x, axis_y, laser.power * f.share[column] - absorbed[column]});
+      }
     }
   }
   ranks.largest(absorbed);
