@@ -128,7 +128,7 @@ def findings(rows, studies, work, root):
     return [
         rise_of_length(rows, work, root),
         of_runs("How far does the absorptivity change the result?", 19, "base",
-                ["absorptivity_low", "absorptivity_high", "absorptivity_06"], studies, ["absorptivity"]),
+                ["absorptivity_low", "absorptivity_high", "absorptivity_06", "ray_traced"], studies, ["absorptivity"]),
         of_runs("How far does the viscosity factor of 20?", 12, "base",
                 ["viscosity_low", "viscosity_high", "viscosity_5", "viscosity_1"], studies, ["viscosity_factor"]),
         of_runs("How far does the law of diffusivity?", 7, "powder_1wt_10", ["diffusivity_liquid"], studies),

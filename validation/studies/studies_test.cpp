@@ -69,7 +69,8 @@ TEST_F(Studies, WhatIsNotThereYetIsNamedAndDoesNotCount) {
   const auto summary = summarise(studies_, folder_);
   EXPECT_TRUE(summary["quantities"]["width"]["relative_u"].is_null());
   EXPECT_EQ(summary["series"][0]["missing"], json::array({"coarse", "fine"}));
-  EXPECT_EQ(summary["runs"].size(), 1u);
+  ASSERT_EQ(summary["runs"].size(), 1u);
+  EXPECT_EQ(summary["runs"][0]["title"], "base");  // of the declaration; the result has none
 }
 
 /// The absorptivity of the base as an input, 0.36 and 0.44 around 0.4.

@@ -131,6 +131,8 @@ json summarise(const StudyDeclaration& studies, const fs::path& folder) {
   json runs = json::array();
   for (const auto& run : studies.runs) {
     if (auto result = read_result(folder / (run.name + ".json"))) {
+      // A result keeps the title that it was run with; the declaration's is the one to be read.
+      (*result)["title"] = run.title;
       by_name[run.name] = {&run, *result};
       runs.push_back(std::move(*result));
     }
