@@ -15,7 +15,7 @@ from rosenthal import conductivity, number  # noqa: E402
 
 EXTENTS = ("length", "width", "depth")
 CLUMPED = 0.01  # share above which a run does not count, as in meltproof-studies
-TREND_ROWS = (("fig5_trend_pool", "connected pool above the liquidus of 316L"),
+TREND_ROWS = (("fig5_trend_pool", "the connected pool above the liquidus of 316L"),
               ("fig5_trend_any_liquid", "any liquid, each point above its own liquidus"))
 CONTENTS = (0, 1, 5)
 TREND_WORDS = {"rises": "rises beyond k u at every step", "falls": "falls beyond k u at one step or more",
@@ -72,7 +72,7 @@ def rise_of_length(rows, work, root):
         lengths = ", ".join(f"{length:.0f} ± {u:.0f} um at {content} wt%" for content, length, u in
                             zip(CONTENTS, details["values"], details["uncertainties"]))
         row = by_name[name]
-        sentences.append(f"Length of the {words}: {lengths}; it {TREND_WORDS[details['trend']]} "
+        sentences.append(f"Length of {words}: {lengths}; it {TREND_WORDS[details['trend']]} "
                          f"(smallest step {row['S']:+.0f} um, u {row['u_val']:.0f} um, k = {row['coverage']:g}). Measured is a "
                          f"rise, so this {row['verdict']}.")
         differences[name] = details["values"]
