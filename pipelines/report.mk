@@ -5,13 +5,14 @@ FIGURE_FOLDER := $(WORK)/figures
 LOOK := $(addprefix pipelines/figures/,style.py artifact.py)
 FIGURES := $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg \
   fig04_powder_and_pool.svg fig05_length.svg fig06_flow.svg fig07_profiles.svg fig08_history.svg fig09_camera.svg \
-  fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg)
+  fig10_bare_plate.svg fig11_resolution.svg fig12_sensitivity.svg fig13_tornado.svg fig14_scatter.svg)
 
 $(addprefix $(FIGURE_FOLDER)/,fig01_diffusion.svg fig02_conduction.svg fig03_flow_cases.svg fig03b_free_surface.svg): \
     $(VERIFICATION) pipelines/figures/verification.py
 $(FIGURE_FOLDER)/fig04_powder_and_pool.svg: $(WORK)/powder_5wt/powder.h5 $(WORK)/track_5wt/run.h5 \
     pipelines/figures/sections.py
-$(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED)
+$(FIGURE_FOLDER)/fig05_length.svg: $(POWDER_TRACKS:%=$(WORK)/track_%/result.json) $(FILMED) \
+    $(COMPARISON)
 $(FIGURE_FOLDER)/fig06_flow.svg: $(WORK)/track_0wt/run.h5 pipelines/figures/sections.py
 $(FIGURE_FOLDER)/fig07_profiles.svg: $(LINESCANS)
 $(FIGURE_FOLDER)/fig08_history.svg: $(RESULTS)
@@ -20,7 +21,8 @@ $(FIGURE_FOLDER)/fig10_bare_plate.svg: $(WORK)/track_316L_175W_750/run.h5 \
     $(WORK)/track_316L_175W_750/result.json $(COMPARISON) \
     pipelines/figures/sections.py
 
-$(FIGURE_FOLDER)/fig11_resolution.svg $(FIGURE_FOLDER)/fig12_sensitivity.svg: $(STUDIES)
+$(addprefix $(FIGURE_FOLDER)/,fig11_resolution.svg fig12_sensitivity.svg fig13_tornado.svg): $(STUDIES)
+$(FIGURE_FOLDER)/fig14_scatter.svg: $(COMPARISON)
 
 # What a figure reads is what stands before its script here; the scripts take it in this order.
 $(FIGURE_FOLDER)/%.svg: pipelines/figures/%.py $(LOOK) | packages
@@ -45,20 +47,27 @@ REPORT := reports/validation.pdf
 REPORT_BEFORE := $(shell stat -c %y $(REPORT) 2>/dev/null)
 
 $(REPORT) reports/validation.html &: $(FIGURES) $(COMPARISON) $(VERIFICATION) $(STUDIES) $(RESULTS) $(FILMED) \
-    $(CIRCUMSTANCES) $(WITNESS) pipelines/figures/track.py \
+    $(CIRCUMSTANCES) $(WITNESS) pipelines/figures/track.py $(wildcard validation/results/paper/estimate.json) \
     $(wildcard reports/template/*) $(wildcard pipelines/report/*.py) pipelines/figures/artifact.py
 	@$(STAGE) 'report' $(PYTHON) pipelines/report/build_report.py --work $(WORK) --figures $(FIGURE_FOLDER) \
 	  --verification $(VERIFICATION) --comparison $(COMPARISON) --studies $(STUDIES) --circumstances $(CIRCUMSTANCES) \
 	  --witness $(WITNESS) --template reports/template --output reports/validation
 
+# What the report is made of, for programs: files, checksums, programs and what each was made from.
+CRATE := reports/ro-crate-metadata.json
+$(CRATE): $(REPORT) pipelines/report/ro_crate.py
+	@$(STAGE) 'research object' $(PYTHON) pipelines/report/ro_crate.py $(VERIFICATION) $(COMPARISON) $(STUDIES) \
+	  $(POWDER_TRACKS:%=$(WORK)/powder_%/powder.h5) $(RESULTS) $(FILMED) $(LINESCANS) --report $(REPORT:.pdf=) \
+	  --figures $(FIGURE_FOLDER) --circumstances $(CIRCUMSTANCES)
+
 .PHONY: figures report validate readme-picture
 figures: $(FIGURES)
 	@echo 'The figures are in $(FIGURE_FOLDER)/.'
 
-report: $(REPORT)
+report: $(REPORT) $(CRATE)
 	@echo 'The report is $(REPORT), and reports/validation.html for a browser.'
 
-validate: $(REPORT)
+validate: $(REPORT) $(CRATE)
 	@if [ "$$(stat -c %y $(REPORT))" = '$(REPORT_BEFORE)' ]; then \
 	  echo 'nothing to do: $(REPORT) is up to date'; fi
 	@$(PYTHON) pipelines/report/results_table.py --verification $(VERIFICATION) --comparison $(COMPARISON) \

@@ -204,15 +204,20 @@ def comparison(path):
                  verdict="agrees", declared="agrees", waits_for=None, quantity="width")
     depth = dict(width, name="bare_316l_depth", title="Synthetic depth", S=20.0, D=58.8, E=-38.8, u_val=17.6,
                  u_D=17.6, verdict="differs", declared="differs", quantity="depth")
+    # Of another file than the table of tracks shows, so that one row of a quantity stands alone there.
+    second = dict(width, name="synthetic_second", title="Synthetic second", S=150.0, D=148.0, E=2.0, u_val=9.0, u_D=5.0,
+                  u_num=4.0, u_input=6.0, simulated={"file": "none/result.json", "value": "/x"})
     lost = dict(row, name="lost_track_5wt", title="Synthetic loss", kind="verification", metric="number", S=0, D=None,
                 verdict="agrees", declared="agrees", waits_for=None, quantity="lost particles")
     Path(path).write_text(json.dumps({
-        "profile": "smoke", "rows": [row, width, depth, lost], "failures": [], "statistics": [], "provenance": PROVENANCE,
-        "summary": {"agrees": 2, "differs": 1, "pending": 1, "not computed": 0}}))
+        "profile": "smoke", "rows": [row, width, depth, second, lost], "failures": [], "provenance": PROVENANCE,
+        "statistics": [{"quantity": quantity, "points": points, "bias": 0.97, "model_scatter": 0.05, "measured_scatter": 0.04,
+                        "scatter_is_noise": False} for quantity, points in (("all", 3), ("width", 2))],
+        "summary": {"agrees": 3, "differs": 1, "pending": 1, "not computed": 0}}))
 
 
 def studies(path):
-    """A resolution of order 1 and one numerical choice, as meltproof-studies would summarise them."""
+    """A resolution of order 1, one numerical choice and three inputs, as meltproof-studies would summarise them."""
     def run(name, spacing, size, clumped=0.0):
         return {"name": name, "title": f"synthetic {name}", "spacing_um": spacing, "clumped_fraction": clumped,
                 **{f"{extent}_{part}": number for extent, scale in (("length", 3), ("width", 1), ("depth", 1))
@@ -225,11 +230,25 @@ def studies(path):
                 "order": 1.0, "order_used": 1.0, "extrapolated_um": 100.0 * scale, "u_um": [4.4, 6.2, 8.8],
                 "u_base_um": 6.2, "relative_u": 0.057}
 
+    def varied(name, slope, share, runs, missing=(), same_side=False, changes=(("0.36", -0.08), ("0.44", 0.08))):
+        entry = {"name": name, "title": f"Synthetic {name}", "kind": "input", "runs": ["base", *runs], **common,
+                 "missing": list(missing),
+                 "input": {"key": f"synthetic.{name}", "value_text": "0.4" if slope else "", "u_text": "0.05" if slope else "",
+                           "value": 0.4 if slope else None, "unit": "1" if slope else None, "reason": "synthetic reason",
+                           "relative_uncertainty": 0.125 if slope else None, "logarithmic": False}}
+        if not missing:
+            effect = {"changes": [{"run": run, "setting": setting, "change": change} for run, (setting, change) in
+                                  zip(runs, changes)], "relative_sensitivity": slope, "relative_u": share,
+                      "one_sided": len(runs) == 1, "same_side": same_side, "left_out": []}
+            entry["quantities"] = {extent: effect for extent in extents}
+        return entry
+
     extents = {"length": 3, "width": 1, "depth": 1}
     common = {"base": "base", "about": "synthetic", "counted": True, "missing": []}
     Path(path).write_text(json.dumps({
         "profile": "desk", "runs": [run("spacing_14", 14, 114), run("base", 10, 110), run("spacing_7", 7, 107),
-                                    run("none", 10, 130, 0.4)],
+                                    run("none", 10, 130, 0.4), run("input_low", 10, 101), run("input_high", 10, 119),
+                                    run("other_law", 10, 113)],
         "series": [
             {"name": "resolution", "title": "Synthetic resolution", "kind": "resolution",
              "runs": ["spacing_14", "base", "spacing_7"], **common,
@@ -237,7 +256,15 @@ def studies(path):
             {"name": "cure", "title": "Synthetic choice", "kind": "numerical", "runs": ["base", "none"], **common,
              "quantities": {extent: {"u_base_um": 0.0, "relative_u": 0.0, "left_out": ["none"]} for extent in extents}},
             {"name": "later", "title": "Synthetic later", "kind": "physics", "runs": ["base", "unmade"], **common,
-             "missing": ["unmade"]}],
+             "missing": ["unmade"]},
+            varied("absorptivity", 0.8, 0.1, ["input_low", "input_high"]),
+            varied("slope", -0.2, 0.025, ["input_low", "input_high"], same_side=True,
+                   changes=(("0.8", 0.01), ("1.2", 0.02))),
+            varied("law", None, 0.017, ["other_law"], changes=(("liquid", 0.03),)),
+            varied("radius", 1.0, None, ["radius_low", "radius_high"], missing=["radius_low", "radius_high"])],
+        "inputs": {extent: {"relative_u": 0.1045, "parts": {"absorptivity": 0.1, "slope": 0.025, "law": 0.017},
+                            "sensitivities": {"absorptivity": 0.8, "slope": -0.2, "law": None}, "missing": ["radius"]}
+                   for extent in extents},
         "quantities": {extent: {"relative_u": 0.057, "parts": {"resolution": 0.057, "cure": 0.0}} for extent in extents},
         "provenance": PROVENANCE}))
 

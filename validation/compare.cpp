@@ -75,6 +75,11 @@ int main(int argc, char** argv) {
           read.insert(path);
         }
       }
+      for (const auto& path : recordings(row, places)) {
+        if (fs::is_regular_file(path)) {
+          read.insert(path);
+        }
+      }
       const fs::path campaign = places.experiments / row.reference.campaign / "dataset.toml";
       if (row.has_reference && fs::is_regular_file(campaign)) {
         read.insert(campaign);

@@ -21,10 +21,10 @@ def main():
     runs = {run["name"]: run for run in artifact.value(summary, "runs", given.studies)}
     rows = []
     for entry in artifact.value(summary, "series", given.studies):
-        if entry["kind"] != "resolution" and entry["base"] in runs:
+        if entry["kind"] in ("numerical", "physics") and entry["base"] in runs:
             rows += [(entry["kind"], runs[name], runs[entry["base"]]) for name in entry["runs"]
                      if name in runs and name != entry["base"]]
-    figure, axes = plt.subplots(figsize=(style.PAGE_WIDTH, 1.2 + 0.28 * max(2, len(rows))))
+    figure, axes = plt.subplots(figsize=(style.PAGE_WIDTH, 1.2 + 0.2 * max(3, len(rows))))
     for offset, (extent, look) in enumerate(zip(EXTENTS, style.SERIES)):
         for place, (_, run, base) in enumerate(rows):
             change = 100 * (run[f"{extent}_um"] / base[f"{extent}_um"] - 1)
@@ -44,7 +44,8 @@ def main():
     axes.set_xlabel("change against the base [%]")
     hollow = any(run["clumped_fraction"] >= CLUMPED for _, run, _ in rows)
     style.save(figure, given.output, "What one changed number does to the pool",
-               "Simulated: the paper's track on a bare plate, one number changed at a time, against the base. Numerical choices "
+               "Simulated: the paper's track, on a bare plate or with powder where a content is named, one number changed at a "
+               "time, against its base. Numerical choices "
                "should change nothing: their spread is part of the numerical uncertainty. Physics may."
                + (" Hollow marks: runs whose melt clumps, which do not count." if hollow else ""))
 

@@ -24,13 +24,15 @@ INPUTS = {
     "fig03b_free_surface": ["verification.json"],
     "fig04_powder_and_pool": ["work/powder_5wt/powder.h5", "work/track_5wt/run.h5"],
     "fig05_length": [f"work/track_{track}/result.json" for track in TRACKS]
-                    + [f"work/track_{track}/thermography/summary.json" for track in TRACKS],
+                    + [f"work/track_{track}/thermography/summary.json" for track in TRACKS] + ["validation.json"],
     "fig06_flow": ["work/track_0wt/run.h5"],
     "fig07_profiles": ["work/track_5wt/linescan_depth.json", "work/track_5wt/linescan_lateral.json"],
     "fig08_history": [f"work/track_{track}/result.json" for track in TRACKS],
     "fig09_camera": ["work/track_5wt/recording.h5", "work/track_5wt/thermography/summary.json"],
     "fig11_resolution": ["studies.json"],
     "fig12_sensitivity": ["studies.json"],
+    "fig13_tornado": ["studies.json"],
+    "fig14_scatter": ["validation.json"],
     "fig10_bare_plate": ["work/track_316L_175W_750/run.h5", "work/track_316L_175W_750/result.json", "validation.json"],
 }
 
@@ -113,11 +115,41 @@ class Figures(unittest.TestCase):
     def test_studies_that_are_not_run_yet_are_said_to_be_missing(self):
         empty = self.root / "no_studies.json"
         empty.write_text('{"runs": [], "series": [{"kind": "resolution", "missing": ["a"], "base": "a", "runs": ["a"]}]}')
-        for name in ("fig11_resolution", "fig12_sensitivity"):
+        for name in ("fig11_resolution", "fig12_sensitivity", "fig13_tornado"):
             output = self.root / f"none_{name}.svg"
             done = draw(name, [empty], output)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("not run yet", output.read_text())
+
+    def test_the_tornado_names_the_largest_input_what_is_missing_and_what_bends(self):
+        output = self.root / "tornado.svg"
+        self.assertEqual(draw("fig13_tornado", [self.root / "studies.json"], output).returncode, 0)
+        words = json.loads(output.with_suffix(".json").read_text())["caption"]
+        self.assertIn("length: synthetic absorptivity first, 10 %", words)
+        self.assertIn("Without runs so far: synthetic radius.", words)
+        self.assertIn("the steeper slope counts (synthetic slope)", words)
+        self.assertEqual(len(re.findall(r"<!-- +\* -->", output.read_text())), 3)  # its mark, in each panel
+
+    def test_the_papers_figure_5_completes_itself_once_its_rows_hold_numbers(self):
+        """The lengths are synthetic: 200, 210 and 260 um are nobody's measurement."""
+        comparison = json.loads((self.root / "validation.json").read_text())
+        one = comparison["rows"][0]
+        filled = [dict(one, name=f"fig5_length_{content}wt", D=length, u_D=u) for content, length, u in
+                  ((0, 200.0, 7.0), (1, 210.0, None), (5, 260.0, 9.0))]
+        place, output = self.root / "filled_validation.json", self.root / "filled.svg"
+        for rows, words, pending in ((filled, "200 um (u 7) at 0 wt%, 210 um (no uncertainty given) at 1 wt%", False),
+                                     (filled[:1], "2 slots are empty", True), ([], "Measured lengths are pending", True)):
+            place.write_text(json.dumps({**comparison, "rows": rows}))
+            inputs = [self.root / path for path in INPUTS["fig05_length"][:-1]]
+            self.assertEqual(draw("fig05_length", [*inputs, place], output).returncode, 0)
+            self.assertIn(words, json.loads(output.with_suffix(".json").read_text())["caption"])
+            self.assertEqual("measurement pending" in output.read_text(), pending)
+
+    def test_a_scatter_without_rows_says_so(self):
+        place, output = self.root / "rowless_validation.json", self.root / "rowless.svg"
+        place.write_text('{"rows": [], "statistics": []}')
+        self.assertEqual(draw("fig14_scatter", [place], output).returncode, 0)
+        self.assertIn("no row has both numbers", output.read_text())
 
     def test_a_section_fills_a_lattice_and_leaves_a_gap(self):
         import h5py

@@ -20,7 +20,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "figures"))
 from artifact import MissingArtifact, existing, open_artifact, read_json, scalar, text, value  # noqa: E402
 from errata_numbers import numbers  # noqa: E402
-from study_table import read_studies  # noqa: E402
+from findings import findings  # noqa: E402
+from fonts import rules  # noqa: E402
+from numbering import number  # noqa: E402
+from study_table import code_differs, read_studies  # noqa: E402
 from track_table import describe, read_tracks  # noqa: E402
 
 
@@ -54,6 +57,15 @@ def extra_text(name, number):
     if isinstance(number, bool) or not isinstance(number, (int, float)):
         return f"{name.replace('_', ' ')}: {number}"
     return f"{name.replace('_', ' ')} {number:.3g}"
+
+
+def readable_rule(rule):
+    """A rule of the comparison table as it is set in print."""
+    return rule.replace("<=", "≤").replace(">=", "≥")
+
+
+def thousands(number):
+    return f"{number:,}".replace(",", " ")
 
 
 def duration(seconds):
@@ -128,7 +140,31 @@ def count(number):
     """A number of particles or steps; a list of them as its largest."""
     if isinstance(number, list):
         number = max(number)
-    return "" if number is None else f"{number:,}".replace(",", " ")
+    return "" if number is None else thousands(number)
+
+
+def is_old_track(made, last_commit, root):
+    """Whether an artifact is a track that other code than that of the sources made. Tables are made anew whenever Make
+    finds them old; of a program built from uncommitted sources it cannot be told."""
+    return (made["program"] == "meltproof-solve" and "dirty" not in made["revision"]
+            and code_differs(made["revision"], last_commit, root))
+
+
+def read_estimate(path):
+    """What a run at the paper's resolution would cost; None if nobody has estimated it."""
+    if not Path(path).is_file():
+        return None
+    estimate = read_json(path)
+    for key in ("hours_two_cores", "hours_64_ranks", "particles", "spacing_um", "revision", "how"):
+        value(estimate, key, path)
+    return estimate
+
+
+def lower_bounds(rows):
+    """Which uncertainties are not fully evaluated among the rows, in words; empty if none."""
+    absent = sorted({name for row in rows for name in (row.get("details") or {}).get("not_evaluated", [])
+                     if row["verdict"] in ("agrees", "differs")})
+    return f"{' and '.join(absent)} not fully evaluated" if absent else ""
 
 
 def sort_rows(rows):
@@ -167,19 +203,23 @@ def report_facts(given):
                            value(read_json(given.witness), "witness", given.witness) if given.witness else None)
     artifacts, inputs, libraries = collect_provenance(given.work, given.verification, given.studies, given.comparison)
     facts = read_json(given.circumstances)
+    for made in artifacts:
+        made["stale"] = is_old_track(made, facts["last_commit"], root)
     revisions = sorted({made["revision"] for made in artifacts})
     names = {**libraries, **facts["python"]}
     return {
         "facts": facts, "cases": cases, "passed": [c for c in cases if c["pass"]],
         "missed": [c for c in cases if not c["pass"]], "comparisons": comparisons, "measured": measured,
-        "pending": pending, "failures": comparison.get("failures", []), "tracks": tracks,
+        "pending": pending, "waiting": sum(len(rows) for _, rows in pending), "bounds": lower_bounds(comparisons),
+        "statistics": value(comparison, "statistics", given.comparison),
+        "findings": findings(rows, studies, given.work, root), "estimate": read_estimate(given.estimate), "failures": comparison.get("failures", []), "tracks": tracks,
         "studies": studies, "not_run": read_json(given.verification).get("not_run", []),
         "balances": [row for row in rows if row["kind"] == "verification" and row["verdict"] != "pending"
                      and "file" in (row.get("simulated") or {})],
         "worst_energy": max(track["energy_relative_error"] for track in tracks),
         "worst_species": max(track["species_relative_error"] for track in tracks),
         "errata": fill_errata(given.template), "artifacts": artifacts, "inputs": inputs,
-        "revision": ", ".join(revisions),
+        "revision": ", ".join(revisions), "stale_artifacts": [made["path"] for made in artifacts if made["stale"]],
         "libraries": ", ".join(f"{name} {version}" for name, version in sorted(names.items())) + ".",
     }
 
@@ -189,10 +229,16 @@ def render(template, facts, figures, picture):
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     environment.filters.update(fixed=fixed, scientific=scientific, short=short, percent_number=percent_number,
                                signed_percent=signed_percent, duration=duration,
+                               readable_rule=readable_rule, thousands=thousands,
                                percent=lambda share: f"{percent_number(share)} %")
     shown = [{**figure, "picture": picture(figure)} for figure in figures]
     style = Markup(existing(Path(template) / "report.css").read_text(encoding="utf-8"))
-    return environment.get_template("report.html").render(**facts, figures=shown, style=style)
+    return number(environment.get_template("report.html").render(**facts, figures=shown, style=style))
+
+
+def with_fonts(page):
+    """The page for a browser: with the fonts of its own text."""
+    return page.replace("<style>\n", f"<style>\n{rules(page)}\n", 1)
 
 
 def write(path, content):
@@ -212,21 +258,23 @@ def main():
     arguments.add_argument("--witness", help="witness.json of the program that made the tracks: studies of other code "
                                              "that has the same are not stale")
     arguments.add_argument("--circumstances", required=True, help="circumstances.json")
+    arguments.add_argument("--estimate", default=HERE.parent.parent / "validation/results/paper/estimate.json",
+                           help="what a run at the paper's resolution would cost, if anybody has estimated it")
     arguments.add_argument("--template", required=True, help="folder with report.html, report.css, errata.toml")
     arguments.add_argument("--output", required=True, help="path without suffix; .html and .pdf are written")
+    arguments.add_argument("--no-pdf", action="store_true", help="write the HTML page only, in a fraction of the time")
     given = arguments.parse_args()
 
     facts, figures = report_facts(given), read_figures(given.figures)
-    page = render(given.template, facts, figures, inline_svg)
-    printed = render(given.template, facts, figures, embedded_svg)
-
-    import weasyprint  # slow to load: only once the page stands
-
-    pdf = weasyprint.HTML(string=printed).write_pdf()
+    page = with_fonts(render(given.template, facts, figures, inline_svg))
     output = Path(given.output)
     output.parent.mkdir(parents=True, exist_ok=True)
+    if not given.no_pdf:
+        import weasyprint  # slow to load: only once the page stands
+
+        pdf = weasyprint.HTML(string=render(given.template, facts, figures, embedded_svg)).write_pdf()
+        write(output.with_suffix(".pdf"), pdf)
     write(output.with_suffix(".html"), page.encode())
-    write(output.with_suffix(".pdf"), pdf)
 
 
 if __name__ == "__main__":

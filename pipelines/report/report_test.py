@@ -13,6 +13,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+import build_report  # noqa: E402
 import errata_numbers  # noqa: E402
 import rosenthal  # noqa: E402
 import study_table  # noqa: E402
@@ -81,6 +82,14 @@ class Stale(unittest.TestCase):
         self.assertTrue(study_table.is_stale({**run, "inputs": []}, "no-such-revision", ROOT))
         self.assertTrue(study_table.is_stale({"revision": "a-dirty", "inputs": []}, "a", ROOT))
 
+    def test_a_track_of_other_code_is_stale_and_nothing_else(self):
+        def old(program, revision):
+            return build_report.is_old_track({"program": program, "revision": revision}, "synthetic", ROOT)
+        self.assertTrue(old("meltproof-solve", "no-such-revision"))
+        self.assertFalse(old("meltproof-solve", "synthetic"))
+        self.assertFalse(old("meltproof-solve", "no-such-revision-dirty"))
+        self.assertFalse(old("meltproof-compare", "no-such-revision"))
+
     def test_other_code_with_the_same_witness_makes_nothing_stale(self):
         run = {"revision": "synthetic", "inputs": [], "witness": "same"}
         self.assertFalse(study_table.is_stale(run, "no-such-revision", ROOT, "same"))
@@ -109,17 +118,18 @@ class Report(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def build(self, output, **changed):
+    def build(self, output, pdf=False, **changed):
         places = {"work": "work", "figures": "figures", "verification": "verification.json",
-                  "comparison": "validation.json", "studies": "studies.json", "circumstances": "circumstances.json"}
+                  "comparison": "validation.json", "studies": "studies.json", "circumstances": "circumstances.json",
+                  "estimate": "no_estimate.json"}
         places.update(changed)
         options = [part for name, place in places.items() for part in (f"--{name}", self.root / place)]
         return run(HERE / "build_report.py", *options, "--template", ROOT / "reports/template", "--output",
-                   self.root / output)
+                   self.root / output, *([] if pdf else ["--no-pdf"]))
 
     def test_equal_artifacts_give_equal_bytes(self):
         for take in ("first", "second"):
-            done = self.build(take)
+            done = self.build(take, pdf=True)
             self.assertEqual(done.returncode, 0, done.stderr)
         for suffix in (".html", ".pdf"):
             first, second = ((self.root / take).with_suffix(suffix).read_bytes() for take in ("first", "second"))
@@ -131,11 +141,64 @@ class Report(unittest.TestCase):
         page = (self.root / "page.html").read_text(encoding="utf-8")
         for words in ("Synthetic width", "Synthetic depth", "1 comparison: synthetic", "11 of 11 cases", "Figure 2.",
                       "growing; tends to 252", "synthetic extra 0.25", "Synthetic resolution", "not run yet:\nunmade",
-                      "synthetic none", "length 5.7 %"):
+                      "synthetic none", "<td>length</td><td class=\"number\">5.7</td>", "not run yet: radius_low, radius_high",
+                      "both runs to one side", "not evaluated: radius", "estimate.json</code> is not there"):
             self.assertIn(words, page)
         self.assertFalse(re.findall(r'(?:src|href)="(?!#|data:)', page))
         names = re.findall(r'\bid="([^"]+)"', page)
         self.assertEqual(len({n for n in names if "figure" in n}), len([n for n in names if "figure" in n]))
+
+    def test_the_pdf_holds_its_fonts_and_its_contents_name_the_pages(self):
+        self.assertEqual(self.build("print", pdf=True).returncode, 0)
+        fonts = subprocess.run(["pdffonts", self.root / "print.pdf"], capture_output=True, text=True, check=True).stdout
+        rows = fonts.splitlines()[2:]
+        self.assertGreaterEqual(len(rows), 3)
+        for row in rows:
+            self.assertEqual(row.split()[-5], "yes", row)  # emb
+        text = subprocess.run(["pdftotext", "-layout", self.root / "print.pdf", "-"], capture_output=True, text=True,
+                              check=True).stdout
+        pages = text.split("\f")
+        entries = re.findall(r"^\s*\d+\s+(.+?)\s*\.{4,}\s*(\d+)\s*$", text, re.M)
+        self.assertGreaterEqual(len(entries), 10, entries)
+        for title, page in entries:
+            self.assertIn(title.split()[-1], pages[int(page) - 1], title)
+        page = (self.root / "print.html").read_text(encoding="utf-8")
+        self.assertEqual(page.count("@font-face"), 3)
+
+    def test_every_link_leads_somewhere(self):
+        self.assertEqual(self.build("links").returncode, 0)
+        page = (self.root / "links.html").read_text(encoding="utf-8")
+        links = set(re.findall(r'<a href="#([^"]+)"', page))
+        self.assertGreater(len(links), 10)
+        self.assertEqual(links - set(re.findall(r'\bid="([^"]+)"', page)), set())
+
+    def test_a_series_that_does_not_converge_is_named(self):
+        studies = json.loads((self.root / "studies.json").read_text())
+        found = studies["series"][0]["quantities"]["depth"]
+        found.update({"behaviour": "oscillates", "order": None, "extrapolated_um": None})
+        (self.root / "oscillates.json").write_text(json.dumps(studies))
+        self.assertEqual(self.build("oscillates", studies="oscillates.json").returncode, 0)
+        page = (self.root / "oscillates.html").read_text(encoding="utf-8")
+        self.assertIn("<strong>Does not converge:</strong> synthetic resolution: depth oscillates", page)
+
+    def test_what_is_not_evaluated_is_named_on_the_first_page(self):
+        comparison = json.loads((self.root / "validation.json").read_text())
+        comparison["rows"][1]["details"] = {"u_val_is_lower_bound": True, "not_evaluated": ["u_D"]}
+        (self.root / "sigma.json").write_text(json.dumps(comparison))
+        self.assertEqual(self.build("sigma", comparison="sigma.json").returncode, 0)
+        first = (self.root / "sigma.html").read_text(encoding="utf-8").split('id="contents"')[0]
+        self.assertIn("a lower bound: u_D not fully evaluated", first)
+
+    def test_the_papers_own_resolution_is_told_where_it_was_estimated(self):
+        (self.root / "estimate.json").write_text(json.dumps(
+            {"hours_two_cores": 500, "hours_64_ranks": 20, "particles": 1300000, "spacing_um": 2, "revision": "synthetic",
+             "how": "made up for a test"}))
+        self.assertEqual(self.build("estimated", estimate="estimate.json").returncode, 0)
+        page = (self.root / "estimated.html").read_text(encoding="utf-8")
+        self.assertIn("1 300 000 particles", page)
+        self.assertIn("made up for a test (revision <code>synthetic</code>)", page)
+        (self.root / "half.json").write_text('{"particles": 1}')
+        self.assertEqual(self.build("half", estimate="half.json").returncode, 2)
 
     def test_a_failure_stands_at_the_top_and_fails_the_job(self):
         comparison = json.loads((self.root / "validation.json").read_text())

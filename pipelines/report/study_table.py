@@ -53,13 +53,34 @@ def resolution_rows(entry):
     return rows
 
 
-def read_studies(path, revision, root, witness=None):
-    """Resolutions, tables of sensitivity, and the shares of u_num, for the template.
+def input_rows(entry):
+    """One row per extent of an input: what its runs did, the sensitivity and the share of u_input."""
+    if "quantities" not in entry:
+        return []
+    rows = []
+    for extent in EXTENTS:
+        found = entry["quantities"][extent]
+        rows.append({"extent": extent, "changes": found["changes"], "sensitivity": found["relative_sensitivity"],
+                     "relative_u": found["relative_u"], "one_sided": found["one_sided"], "same_side": found["same_side"],
+                     "left_out": found["left_out"]})
+    return rows
 
-    `revision` is the one that made the tracks of this report; a run of another one is marked stale, unless it has the same `witness`."""
+
+def not_converging(resolutions):
+    """The extents of the resolutions whose series has no order to extrapolate with, in words."""
+    return [f"{entry['title'].lower()}: {row['extent']} {row['behaviour']}" for entry in resolutions
+            for row in entry["rows"] if row["behaviour"] != "converges"]
+
+
+def read_studies(path, revision, root, witness=None):
+    """Resolutions, tables of sensitivity, inputs, and the shares of u_num and u_input, for the template.
+
+    `revision` is the one that made the tracks of this report; a run of another one is marked stale, unless it has the
+    same `witness`."""
     summary = read_json(path)
-    by_name = {run["name"]: {**run, "stale": is_stale(run, revision, root, witness)} for run in value(summary, "runs", path)}
-    resolutions, tables, missing = [], [], []
+    by_name = {run["name"]: {**run, "stale": is_stale(run, revision, root, witness)}
+               for run in value(summary, "runs", path)}
+    resolutions, tables, inputs, missing = [], [], [], []
     for entry in value(summary, "series", path):
         missing += [name for name in entry["missing"] if name not in missing]
         runs = [by_name[name] for name in entry["runs"] if name in by_name]
@@ -67,12 +88,15 @@ def read_studies(path, revision, root, witness=None):
             if not entry["missing"]:
                 resolutions.append({**entry, "rows": resolution_rows(entry), "made": runs,
                                     "stale": any(run["stale"] for run in runs)})
+        elif entry["kind"] == "input":
+            inputs.append({**entry, "rows": input_rows(entry), "stale": any(run["stale"] for run in runs)})
         elif len(runs) > 1 and entry["base"] in by_name:
             base = by_name[entry["base"]]
             changed = [{**run, "is_base": run["name"] == entry["base"],
                         **{f"{extent}_change": run[f"{extent}_um"] / base[f"{extent}_um"] - 1 if base[f"{extent}_um"]
                            else None for extent in EXTENTS}} for run in runs]
             tables.append({**entry, "made": changed})
-    return {"resolutions": resolutions, "tables": tables, "missing": missing, "runs": list(by_name.values()),
+    return {"resolutions": resolutions, "tables": tables, "inputs": inputs, "input_sums": summary.get("inputs", {}),
+            "not_converging": not_converging(resolutions), "missing": missing, "runs": list(by_name.values()),
             "quantities": value(summary, "quantities", path),
             "stale": [run["name"] for run in by_name.values() if run["stale"]]}

@@ -112,6 +112,64 @@ TEST_F(Results, AStudyTakesThePlaceOfTheSpacing) {
   EXPECT_NEAR(*run_row(row, places_).numbers.u_num, std::sqrt(100.0 / 6 + 9), 1e-9);
 }
 
+/// studies.json with synthetic shares: absorptivity 8 % of the width (sensitivity 0.6), a law 3 %.
+json with_inputs(const std::vector<std::string>& missing) {
+  return {{"quantities", {{"width", {{"relative_u", 0.05}}}}},
+          {"inputs",
+           {{"width",
+             {{"relative_u", 0.0},
+              {"parts", {{"absorptivity", 0.08}, {"law", 0.03}}},
+              {"sensitivities", {{"absorptivity", 0.6}, {"law", nullptr}}},
+              {"missing", missing}}}}}};
+}
+
+TEST_F(Results, UncertainInputsEnterTheValidationUncertainty) {
+  Row row = width_row();
+  row.simulated.study = "width";
+  put("desk/track.json", {{"width_m", 120e-6}});
+  places_.studies = folder_ / "studies.json";
+  put("studies.json", with_inputs({}));
+  const auto all = run_row(row, places_).numbers;
+  EXPECT_NEAR(*all.u_input, 120 * std::hypot(0.08, 0.03), 1e-9);
+  EXPECT_NEAR(*all.u_val, std::hypot(6.0, *all.u_input, 0.066 * 127.7), 1e-9);
+  EXPECT_EQ(all.details["u_val_is_lower_bound"], false);
+  EXPECT_TRUE(all.details["not_evaluated"].empty());
+  put("studies.json", with_inputs({"radius"}));
+  const auto part = run_row(row, places_);
+  EXPECT_EQ(part.numbers.details["u_val_is_lower_bound"], true);
+  EXPECT_EQ(part.numbers.details["inputs_not_evaluated"], json::array({"radius"}));
+  EXPECT_NE(part.finding.find("lower bound: u_input not fully"), std::string::npos);
+}
+
+TEST_F(Results, ARowOfAnotherMaterialHasItsOwnUncertainInputs) {
+  Row row = width_row();
+  row.simulated.study = "width";
+  put("desk/track.json", {{"width_m", 120e-6}});
+  places_.studies = folder_ / "studies.json";
+  put("studies.json", with_inputs({"radius"}));
+  row.simulated.inputs = {"absorptivity = 21 %", "law = 0 %", "radius = 0 %"};
+  const auto own = run_row(row, places_).numbers;
+  EXPECT_NEAR(*own.u_input, 120 * 0.6 * 0.21, 1e-9);
+  EXPECT_EQ(own.details["u_val_is_lower_bound"], false);
+  for (const char* wrong : {"law = 4 %", "colour = 0 %", "absorptivity", "absorptivity = 3 um"}) {
+    row.simulated.inputs = {wrong};
+    EXPECT_EQ(run_row(row, places_).verdict, "not computed") << wrong;
+  }
+}
+
+TEST_F(Results, AMeasurementWithoutSigmaIsNamedAndNotTakenAsExact) {
+  Row row = width_row();
+  row.input_uncertainty = 1.0;
+  row.simulated.uncertainty = "/u";
+  row.reference = {.campaign = "tracks316l", .file = "trapp2017.csv", .column = "width"};
+  row.reference.where = {"power = 99"};
+  put("desk/track.json", {{"width_m", 126e-6}, {"u", 2e-6}});
+  const auto result = run_row(row, places_);
+  EXPECT_FALSE(result.numbers.u_data);
+  EXPECT_EQ(result.numbers.details["not_evaluated"], json::array({"u_D"}));
+  EXPECT_NE(result.finding.find("lower bound: u_D not"), std::string::npos);
+}
+
 TEST_F(Results, ARowMayStandForSeveral) {
   ComparisonTable table;
   Row row;
@@ -325,9 +383,42 @@ TEST_F(Results, BiasAndScatterNeedTwoRowsOfAQuantity) {
   other.reference.where = {"power = 150", "speed = 300", "powder = 0"};
   table.rows.push_back(other);
   const auto found = statistics(run_table(table, places_));
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0]["quantity"], "all");
+  EXPECT_EQ(found[1]["quantity"], "width");
+  EXPECT_EQ(found[1]["points"], 2);
+  EXPECT_TRUE(found[1]["scatter_is_noise"]);
+}
+
+TEST_F(Results, BiasAndScatterOfAllRowsTakeQuantitiesTogether) {
+  ComparisonTable table;
+  table.rows.push_back(width_row());
+  put("desk/track.json", {{"width_m", 127.7e-6 * 1.1}, {"depth_m", 58.8e-6 * 0.9}});
+  Row depth = width_row();
+  depth.name = depth.quantity = depth.reference.column = "depth";
+  depth.simulated.value = "/depth_m";
+  table.rows.push_back(depth);
+  const auto found = statistics(run_table(table, places_));
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0]["points"], 2);
-  EXPECT_TRUE(found[0]["scatter_is_noise"]);
+  EXPECT_EQ(found[0]["quantity"], "all");
+  // RMS of 6.6 and 30 %, the measurements' own.
+  EXPECT_NEAR(found[0]["measured_scatter"].get<double>(), std::sqrt((0.066 * 0.066 + 0.09) / 2),
+              1e-12);
+}
+
+TEST_F(Results, ATrendMayFollowMeasuredNumbers) {
+  Row row = trend_row();
+  row.simulated.files = {"a.json", "b.json"};
+  row.reference = {.campaign = "ambench2022_03", .file = "tracks.csv", .column = "depth"};
+  row.reference.where = {"case = 0", "case = 3.1"};  // 139.7, 166.1 um
+  put("desk/a.json", {{"l", 100}, {"u", 3}});
+  put("desk/b.json", {{"l", 120}, {"u", 3}});
+  const auto found = run_row(row, places_);
+  EXPECT_EQ(found.verdict, "agrees");
+  EXPECT_EQ(found.numbers.details["reference"], json({139.7, 166.1}));
+  row.reference.where = {"case = 3.1", "case = 0"};
+  EXPECT_NE(run_row(row, places_).failure.find("does not rise from 166.1 to 139.7"),
+            std::string::npos);
 }
 
 TEST(Rules, NeedTheNumbersThatTheyCompare) {

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "validation/compare/input_share.hpp"
+#include "validation/compare/recordings.hpp"
 #include "validation/metrics/trend.hpp"
 #include "validation/metrics/validation_error.hpp"
 
@@ -18,12 +20,24 @@ RowNumbers difference(const Row& row, const Places& places) {
   const Datum measured = reference_number(row, places);
   n.measured = measured.value;
   n.u_data = measured.uncertainty;
-  n.u_input = row.input_uncertainty;
   n.reference_pending = !measured.value;
+  if (!row.reference.recordings.empty()) {
+    const auto recorded = recorded_quantity(recordings(row, places), row.reference.column);
+    n.details["u_D_parts"] = {{"scatter", recorded.scatter}, {"systematic", recorded.systematic}};
+  }
   const auto simulated = simulated_number(row, row.simulated.file, places);
   n.simulated = simulated.value;
   n.u_num = simulated.uncertainty;
   n.details["u_num_parts"] = simulated.parts;
+  const auto inputs = input_share(row, places);
+  n.u_input = row.input_uncertainty;
+  if (!n.u_input && inputs.relative) {
+    n.u_input = *inputs.relative * std::abs(*n.simulated);
+    n.details["u_input_shares"] = inputs.parts;
+  }
+  if (!row.input_uncertainty && !inputs.missing.empty()) {
+    n.details["inputs_not_evaluated"] = inputs.missing;
+  }
   if (n.measured) {
     const auto e = validation_error(*n.simulated, *n.measured,
                                     {.numerical = n.u_num, .input = n.u_input, .data = n.u_data},
@@ -32,7 +46,18 @@ RowNumbers difference(const Row& row, const Places& places) {
     n.u_val = e.uncertainty;
     n.lower = e.lower;
     n.upper = e.upper;
-    n.details["u_val_is_lower_bound"] = !e.complete || !simulated.studied;
+    n.details["u_val_is_lower_bound"] =
+        !e.complete || !simulated.studied || n.details.contains("inputs_not_evaluated");
+    // Which one is absent, so that a missing sigma is named and not taken for zero.
+    n.details["not_evaluated"] = nlohmann::json::array();
+    for (const auto& [name, known] :
+         {std::pair{"u_num", n.u_num.has_value() && simulated.studied},
+          {"u_input", n.u_input && !n.details.contains("inputs_not_evaluated")},
+          {"u_D", n.u_data.has_value()}}) {
+      if (!known) {
+        n.details["not_evaluated"].push_back(name);
+      }
+    }
   }
   return n;
 }
@@ -81,10 +106,25 @@ RowNumbers curve(const Row& row, const Places& places) {
   return n;
 }
 
+/// What the reference says of the settings of a trend, in their order: a whole column (ranks, or
+/// lengths), or, where the row names conditions, one number for each of them.
+std::vector<double> measured_order(const Row& row, const Places& places) {
+  const Campaign campaign = reference_campaign(row, places);
+  const auto& file = campaign.file(row.reference.file);
+  const auto& numbers = file.column(row.reference.column).numbers;
+  if (row.reference.where.empty()) {
+    return numbers;
+  }
+  std::vector<double> picked;
+  for (const auto& condition : row.reference.where) {
+    picked.push_back(numbers.at(file.row({condition})));
+  }
+  return picked;
+}
+
 RowNumbers trend_of(const Row& row, const Places& places) {
   RowNumbers n;
-  const Campaign campaign = reference_campaign(row, places);
-  const auto& ranks = campaign.file(row.reference.file).column(row.reference.column).numbers;
+  const auto ranks = measured_order(row, places);
   if (ranks.size() != row.simulated.files.size()) {
     throw InputError(fmt::format("row \"{}\": {} files for {} ranks in {}: expected as many.",
                                  row.name, row.simulated.files.size(), ranks.size(),
@@ -93,19 +133,23 @@ RowNumbers trend_of(const Row& row, const Places& places) {
   std::vector<double> values, uncertainties;
   for (std::size_t i = 0; i < ranks.size(); ++i) {
     if (i > 0 && !(ranks[i] > ranks[i - 1])) {
-      throw InputError(fmt::format("{}: the ranks do not rise: expected the settings in order.",
-                                   row.reference.file));
+      throw InputError(
+          fmt::format("row \"{}\": {} of {} does not rise from {} to {}: expected the settings in "
+                      "the order in which it does.",
+                      row.name, row.reference.column, row.reference.file, ranks[i - 1], ranks[i]));
     }
     const auto number = simulated_number(row, row.simulated.files[i], places);
     values.push_back(number.value);
     uncertainties.push_back(number.uncertainty.value_or(0));
   }
+  // u_input has no part here: an input that is off moves all settings alike.
   const auto found = trend(values, uncertainties, row.coverage);
   const auto& weakest = found.steps[found.weakest];
   n.simulated = weakest.rise;
   n.u_num = n.u_val = weakest.uncertainty;
   n.rises = found.result == TrendResult::rises;
   n.details["values"] = values;
+  n.details["reference"] = ranks;
   n.details["uncertainties"] = uncertainties;
   n.details["trend"] = found.result == TrendResult::rises   ? "rises"
                        : found.result == TrendResult::falls ? "falls"

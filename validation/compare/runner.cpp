@@ -5,9 +5,11 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.hpp"
 #include "validation/compare/metric.hpp"
+#include "validation/compare/recordings.hpp"
 #include "validation/compare/rule.hpp"
 #include "validation/metrics/log_ratio.hpp"
 
@@ -32,6 +34,12 @@ std::string source_text(const Row& row, const Places& places) {
            : row.metric == "number"                 ? "asked of every run"
                                                     : "conservation law";
   }
+  if (!row.reference.recordings.empty()) {
+    const auto paths = recordings(row, places);
+    const bool synthetic = recorded_quantity(paths, row.reference.column).synthetic;
+    return fmt::format("{}{} recording{} of {}: {}", synthetic ? "SYNTHETIC: " : "", paths.size(),
+                       paths.size() > 1 ? "s" : "", row.reference.campaign, row.reference.column);
+  }
   const Campaign campaign = reference_campaign(row, places);
   const auto& file = campaign.file(row.reference.file);
   return fmt::format("{}, doi {}; {}/{}: {} ({})",
@@ -45,11 +53,12 @@ std::string finding_text(const Row& row, const RowNumbers& n) {
                        number_text(n.u_val, row.unit), n.details["trend"].get<std::string>());
   }
   if (n.error) {
-    return fmt::format("E = {}, u_val = {}{}", number_text(n.error, row.unit),
-                       number_text(n.u_val, row.unit),
-                       n.details.value("u_val_is_lower_bound", false)
-                           ? " (a lower bound: not every uncertainty is evaluated)"
-                           : "");
+    const auto absent = n.details.value("not_evaluated", std::vector<std::string>{});
+    return fmt::format(
+        "E = {}, u_val = {}{}", number_text(n.error, row.unit), number_text(n.u_val, row.unit),
+        absent.empty()
+            ? ""
+            : fmt::format(" (a lower bound: {} not fully evaluated)", fmt::join(absent, " and ")));
   }
   return fmt::format("S = {}", number_text(n.simulated, row.unit));
 }
@@ -60,7 +69,8 @@ void judge(RowResult& result, const Places& places) {
   if (row.waits_for == "simulation" && !simulated_there(row, places)) {
     result.verdict = "pending";
     result.finding = "there is no simulation of this row yet";
-    if (!row.reference.where.empty()) {
+    if (row.metric == "difference" &&
+        !(row.reference.where.empty() && row.reference.recordings.empty())) {
       const Datum measured = reference_number(row, places);
       result.numbers.measured = measured.value;
       result.numbers.u_data = measured.uncertainty;
@@ -205,8 +215,9 @@ json statistics(const std::vector<RowResult>& results) {
     const auto& n = result.numbers;
     if (result.row.metric == "difference" && n.simulated && n.measured && *n.simulated > 0 &&
         *n.measured > 0) {
-      quantities[result.row.quantity].push_back(
-          {*n.simulated, *n.measured, n.u_data.value_or(0) / *n.measured});
+      const RatioDatum datum{*n.simulated, *n.measured, n.u_data.value_or(0) / *n.measured};
+      quantities[result.row.quantity].push_back(datum);
+      quantities["all"].push_back(datum);
     }
   }
   json list = json::array();

@@ -33,7 +33,8 @@ RowResult run_row(const Row& row, const Places& places);
 std::vector<RowResult> run_table(const ComparisonTable& table, const Places& places,
                                  const std::string& profile = "");
 
-/// Bias and scatter of ln(S/D) for each quantity with at least two rows that have both numbers.
+/// Bias and scatter of ln(S/D) for each quantity with at least two rows that have both numbers, and
+/// as "all" over every such row, whatever its quantity.
 nlohmann::json statistics(const std::vector<RowResult>& results);
 
 /// The whole result: {profile, rows, summary, statistics, failures}. Files are named without the

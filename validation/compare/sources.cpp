@@ -9,6 +9,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/units.hpp"
+#include "validation/compare/recordings.hpp"
 
 namespace meltproof::validation {
 
@@ -129,10 +130,28 @@ Campaign reference_campaign(const Row& row, const Places& places) {
   return read_campaign(places.experiments / row.reference.campaign);
 }
 
-Datum reference_number(const Row& row, const Places& places) {
+std::vector<std::filesystem::path> recordings(const Row& row, const Places& places) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& name : row.reference.recordings) {
+    paths.push_back(places.experiments / row.reference.campaign / name);
+  }
+  return paths;
+}
+
+namespace {
+
+Datum published_number(const Row& row, const Places& places) {
   const Campaign campaign = reference_campaign(row, places);
   const auto& file = campaign.file(row.reference.file);
-  Datum result = datum(file, row.reference.column, file.row(row.reference.where));
+  return datum(file, row.reference.column, file.row(row.reference.where));
+}
+
+}  // namespace
+
+Datum reference_number(const Row& row, const Places& places) {
+  Datum result = row.reference.recordings.empty()
+                     ? published_number(row, places)
+                     : recorded_quantity(recordings(row, places), row.reference.column).datum;
   if (!result.value) {
     return result;
   }

@@ -51,8 +51,11 @@ VerificationNumber verification_number(const Row& row, const Places& places);
 /// The files of results that a row reads.
 std::vector<std::filesystem::path> simulated_files(const Row& row, const Places& places);
 
+/// summary.json of each recording that the row's reference names.
+std::vector<std::filesystem::path> recordings(const Row& row, const Places& places);
+
 /// The row's measured number, in the row's unit; without value if the slot is empty.
-/// @throws InputError as read_campaign().
+/// @throws InputError as read_campaign() or recorded_quantity().
 Datum reference_number(const Row& row, const Places& places);
 
 /// The campaign and file of the row's reference.

@@ -31,7 +31,12 @@ InputTable simulated_table(SimulatedSource& s) {
                                  "Where `study` knows better, it is left out."})
       .text(s.study, {.name = "study",
                       .about = "Quantity of the studies (length, width, depth) whose relative "
-                               "uncertainty by spacing and numerical choices enters u_num."})
+                               "uncertainty by spacing and numerical choices enters u_num, and "
+                               "by uncertain inputs u_input."})
+      .texts(s.inputs, {.name = "inputs",
+                        .about = "\"name = 5 %\": inputs of the studies whose relative standard "
+                                 "uncertainty is another one here, with another material or beam; "
+                                 "0 %: it does not exist here."})
       .text(s.unit, {.name = "unit", .about = "Of these numbers (udunits2)."});
   return table;
 }
@@ -41,10 +46,18 @@ InputTable reference_table(ReferenceSource& r) {
   table
       .text(r.campaign,
             {.name = "campaign", .about = "Folder in data/experiments.", .required = true})
-      .text(r.file, {.name = "file", .about = "CSV file of the campaign.", .required = true})
-      .text(r.column, {.name = "column", .about = "Column of the file.", .required = true})
+      .text(r.file, {.name = "file", .about = "CSV file of the campaign."})
+      .texts(
+          r.recordings,
+          {.name = "recordings",
+           .about = "Instead of `file`: summary.json of meltproof-thermography of each track, in "
+                    "the campaign's folder."})
+      .text(r.column, {.name = "column",
+                       .about = "Column of the file; of recordings length or depth.",
+                       .required = true})
       .texts(r.where, {.name = "where",
-                       .about = "Conditions \"column = value\" that pick one row of the file."})
+                       .about = "Conditions \"column = value\" that pick one row of the file; of a "
+                                "trend one for each setting, in its order."})
       .quantity(r.relative_uncertainty,
                 {.name = "relative_uncertainty",
                  .unit = "1",
@@ -93,7 +106,7 @@ InputTable row_table(Row& row) {
       .quantity(row.input_uncertainty,
                 {.name = "input_uncertainty",
                  .unit = "1",
-                 .about = "u_input in the row's unit; left out: not evaluated.",
+                 .about = "u_input in the row's unit; left out: what the studies found.",
                  .minimum = 0})
       .text(row.figure, {.name = "figure", .about = "That shows it.", .required = true})
       .text(row.verdict, {.name = "verdict",
@@ -176,6 +189,13 @@ void check(const ComparisonTable& table, const std::filesystem::path& path) {
     }
     if (s.verification_case.empty() && s.value.empty()) {
       refuse(row, "[row.simulated] names no value: expected a JSON pointer");
+    }
+    const auto& r = row.reference;
+    if (row.has_reference && r.file.empty() == r.recordings.empty()) {
+      refuse(row, "expected exactly one of file and recordings under [row.reference]");
+    }
+    if (!r.recordings.empty() && (row.metric != "difference" || !r.where.empty())) {
+      refuse(row, "recordings give one number: expected the metric \"difference\" and no `where`");
     }
     if (row.metric != "error_norm" && row.metric != "number" && !row.has_reference) {
       refuse(row, fmt::format("the metric \"{}\" needs a [row.reference]", row.metric));

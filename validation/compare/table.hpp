@@ -23,7 +23,10 @@ struct SimulatedSource {
   std::string uncertainty = {};         ///< JSON pointer to its standard uncertainty; empty: none
   std::string over = {};                ///< JSON pointer to a number that divides the first
   std::string spacing = {};             ///< JSON pointer to the particle spacing; empty: none
-  std::string study = {};  ///< quantity of the studies whose share enters u_num; empty: none
+  /// Quantity of the studies whose shares enter u_num and u_input; empty: none.
+  std::string study = {};
+  /// "name = 5 %": inputs of the studies whose relative uncertainty is another one in this row.
+  std::vector<std::string> inputs = {};
   std::string unit = "1";  ///< of value, uncertainty and spacing
 };
 
@@ -31,8 +34,10 @@ struct SimulatedSource {
 struct ReferenceSource {
   std::string campaign = {};  ///< folder in data/experiments
   std::string file = {}, column = {};
-  /// Conditions that pick one row of the file; empty: all rows.
+  /// Conditions that pick one row of the file; of a trend one for each setting. Empty: all rows.
   std::vector<std::string> where = {};
+  /// Instead of file: summary.json of each recorded track, in the campaign's folder.
+  std::vector<std::string> recordings = {};
   double relative_uncertainty = 0;  ///< standard, added to what the campaign declares
 };
 
@@ -50,7 +55,7 @@ struct Row {
   std::string rule_reason;  ///< why this rule
   double limit = 0;         ///< of rules "at_most" and "at_least", in `unit`
   double coverage = 2;      ///< k of the rules with an uncertainty
-  std::optional<double> input_uncertainty;  ///< u_input in `unit`; absent: not evaluated
+  std::optional<double> input_uncertainty;  ///< u_input in `unit`; absent: from the studies
   std::string figure;
   std::string verdict;    ///< declared: agrees, differs, pending
   std::string reason;     ///< of the declared verdict

@@ -37,9 +37,10 @@ Input study_input(StudyDeclaration& studies) {
         table.text(series.name, {.name = "name", .about = "Short and unique.", .required = true})
             .text(series.title, {.name = "title", .about = "For the report.", .required = true})
             .text(series.kind, {.name = "kind",
-                                .about = "Three spacings, numerical choices, or physics.",
+                                .about = "Three spacings, numerical choices, physics, or an "
+                                         "uncertain input.",
                                 .required = true,
-                                .choices = {"resolution", "numerical", "physics"}})
+                                .choices = {"resolution", "numerical", "physics", "input"}})
             .text(series.base,
                   {.name = "base", .about = "What the others are compared with.", .required = true})
             .texts(series.runs, {.name = "runs",
@@ -47,12 +48,59 @@ Input study_input(StudyDeclaration& studies) {
                                  .required = true})
             .text(series.about, {.name = "about", .about = "What it is for.", .required = true})
             .flag(series.counted,
-                  {.name = "counted", .about = "Whether its uncertainty enters u_num."});
+                  {.name = "counted", .about = "Whether its uncertainty enters u_num or u_input."})
+            .text(series.key,
+                  {.name = "input", .about = "Key of the case that the runs of an input set."})
+            .text(series.value, {.name = "value",
+                                 .about = "Of the input at the base, with unit; left out for a "
+                                          "choice between laws."})
+            .text(series.uncertainty,
+                  {.name = "uncertainty",
+                   .about = "Standard uncertainty of the input, with unit or in %."})
+            .text(series.reason,
+                  {.name = "reason", .about = "Where value and uncertainty of an input come from."})
+            .flag(series.logarithmic,
+                  {.name = "logarithmic",
+                   .about = "The input is a factor, whose logarithm is uncertain."});
         return table;
       },
       true);
   return Input(std::move(root));
 }
+
+std::string setting_of(const StudyRun& run, const std::string& key) {
+  for (const auto& setting : run.set) {
+    if (setting.starts_with(key + "=")) {
+      return setting.substr(key.size() + 1);
+    }
+  }
+  return {};
+}
+
+namespace {
+
+/// What is wrong with a series of kind input; empty if nothing is.
+std::string fault_of_input(const StudySeries& series, const StudyDeclaration& studies) {
+  if (series.key.empty() || series.reason.empty()) {
+    return "needs the key `input` that its runs set and a `reason` with its source";
+  }
+  if (series.value.empty() != series.uncertainty.empty()) {
+    return "has only one of `value` and `uncertainty`: give both, or, for a choice, neither";
+  }
+  if (series.runs.size() < 2 || series.runs.size() > 3) {
+    return "expects its base and one or two other runs";
+  }
+  for (const auto& run : studies.runs) {
+    const bool named =
+        std::find(series.runs.begin(), series.runs.end(), run.name) != series.runs.end();
+    if (named && run.name != series.base && setting_of(run, series.key).empty()) {
+      return fmt::format("names the run \"{}\", which does not set {}", run.name, series.key);
+    }
+  }
+  return {};
+}
+
+}  // namespace
 
 void check(const StudyDeclaration& studies, const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& what) {
@@ -81,6 +129,11 @@ void check(const StudyDeclaration& studies, const std::filesystem::path& path) {
     if (series.kind == "resolution" && series.runs.size() != 3) {
       refuse(fmt::format("the resolution \"{}\" has {} runs: expected three spacings", series.name,
                          series.runs.size()));
+    }
+    if (series.kind == "input") {
+      if (const auto fault = fault_of_input(series, studies); !fault.empty()) {
+        refuse(fmt::format("the input \"{}\" {}", series.name, fault));
+      }
     }
   }
 }

@@ -13,6 +13,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "validation/metrics/grid_convergence.hpp"
+#include "validation/studies/inputs.hpp"
 
 namespace meltproof::validation {
 namespace {
@@ -21,7 +22,6 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::array quantities = {"length", "width", "depth"};
-constexpr double clumped_allowed = 0.01;
 
 std::optional<json> read_result(const fs::path& path) {
   if (!fs::is_regular_file(path)) {
@@ -35,28 +35,16 @@ std::optional<json> read_result(const fs::path& path) {
   return result;
 }
 
-double number(const json& result, const std::string& key, const std::string& run) {
-  if (!result.contains(key) || !result[key].is_number()) {
-    throw InputError(
-        fmt::format("{}.json: it holds no number {}: remove it and run `make studies`.", run, key));
-  }
-  return result[key].get<double>();
-}
-
-/// The runs of a series that are there.
-struct Found {
-  std::vector<std::string> names;
-  std::vector<json> results;
-};
+using Found = std::vector<FinishedRun>;
 
 json resolution(const Found& found, const std::string& base, const std::string& quantity) {
   std::array<double, 3> spacing{}, value{};
   std::size_t base_at = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t k = 2 - i;  // declared from coarse to fine
-    spacing[i] = number(found.results[k], "spacing_um", found.names[k]);
-    value[i] = number(found.results[k], quantity + "_um", found.names[k]);
-    base_at = found.names[k] == base ? i : base_at;
+    spacing[i] = result_number(found[k].result, "spacing_um", found[k].declared->name);
+    value[i] = result_number(found[k].result, quantity + "_um", found[k].declared->name);
+    base_at = found[k].declared->name == base ? i : base_at;
   }
   const auto r = resolution_series(spacing, value);
   json j = {{"behaviour", r.behaviour},
@@ -79,12 +67,13 @@ json spread(const Found& found, const std::string& base, const std::string& quan
   double low = 0, high = 0, at_base = 0;
   bool first = true;
   json left_out = json::array();
-  for (std::size_t i = 0; i < found.names.size(); ++i) {
-    const double value = number(found.results[i], quantity + "_um", found.names[i]);
-    if (found.names[i] == base) {
+  for (const auto& run : found) {
+    const std::string& name = run.declared->name;
+    const double value = result_number(run.result, quantity + "_um", name);
+    if (name == base) {
       at_base = value;
-    } else if (number(found.results[i], "clumped_fraction", found.names[i]) >= clumped_allowed) {
-      left_out.push_back(found.names[i]);
+    } else if (result_number(run.result, "clumped_fraction", name) >= clumped_allowed) {
+      left_out.push_back(name);
       continue;
     }
     low = first ? value : std::min(low, value);
@@ -95,48 +84,36 @@ json spread(const Found& found, const std::string& base, const std::string& quan
   return {{"u_base_um", u}, {"relative_u", u / at_base}, {"left_out", left_out}};
 }
 
-}  // namespace
+/// What a series says of one quantity, by its kind.
+json of_quantity(const StudySeries& series, const Found& found, const std::string& quantity) {
+  return series.kind == "resolution" ? resolution(found, series.base, quantity)
+         : series.kind == "input"    ? input_effect(series, found, quantity)
+                                     : spread(found, series.base, quantity);
+}
 
-json summarise(const StudyDeclaration& studies, const fs::path& folder) {
-  std::map<std::string, json> by_name;
-  json runs = json::array();
-  for (const auto& run : studies.runs) {
-    if (auto result = read_result(folder / (run.name + ".json"))) {
-      by_name[run.name] = *result;
-      runs.push_back(std::move(*result));
-    }
-  }
-  json summary = {{"profile", studies.profile}, {"runs", runs}, {"series", json::array()}};
+/// Takes the share of a series into the sums of its quantity, or names it as missing there.
+void count(const StudySeries& series, const json& entry, json& summary) {
   for (const char* quantity : quantities) {
-    summary["quantities"][quantity] = {{"relative_u", nullptr}, {"parts", json::object()}};
-  }
-  for (const auto& series : studies.series) {
-    Found found;
-    json missing = json::array();
-    for (const auto& name : series.runs) {
-      if (const auto at = by_name.find(name); at != by_name.end()) {
-        found.names.push_back(name);
-        found.results.push_back(at->second);
+    const bool there =
+        entry.contains("quantities") && !entry["quantities"][quantity]["relative_u"].is_null();
+    if (series.kind == "input") {
+      auto& sum = summary["inputs"][quantity];
+      if (there) {
+        sum["parts"][series.name] = entry["quantities"][quantity]["relative_u"];
+        sum["sensitivities"][series.name] = entry["quantities"][quantity]["relative_sensitivity"];
       } else {
-        missing.push_back(name);
+        sum["missing"].push_back(series.name);
       }
+    } else if (there) {
+      summary["quantities"][quantity]["parts"][series.name] =
+          entry["quantities"][quantity]["relative_u"];
     }
-    json entry = {{"name", series.name},       {"title", series.title}, {"kind", series.kind},
-                  {"base", series.base},       {"runs", series.runs},   {"about", series.about},
-                  {"counted", series.counted}, {"missing", missing}};
-    if (missing.empty()) {
-      for (const char* quantity : quantities) {
-        const json q = series.kind == "resolution" ? resolution(found, series.base, quantity)
-                                                   : spread(found, series.base, quantity);
-        entry["quantities"][quantity] = q;
-        if (series.counted && series.kind != "physics") {
-          summary["quantities"][quantity]["parts"][series.name] = q["relative_u"];
-        }
-      }
-    }
-    summary["series"].push_back(std::move(entry));
   }
-  for (auto& quantity : summary["quantities"]) {
+}
+
+/// relative_u: the root of the sum of squares of the parts; null as long as there is none.
+void add_up(json& sums) {
+  for (auto& quantity : sums) {
     double square = 0;
     for (const auto& part : quantity["parts"]) {
       square += std::pow(part.get<double>(), 2);
@@ -145,6 +122,57 @@ json summarise(const StudyDeclaration& studies, const fs::path& folder) {
       quantity["relative_u"] = std::sqrt(square);
     }
   }
+}
+
+}  // namespace
+
+json summarise(const StudyDeclaration& studies, const fs::path& folder) {
+  std::map<std::string, FinishedRun> by_name;
+  json runs = json::array();
+  for (const auto& run : studies.runs) {
+    if (auto result = read_result(folder / (run.name + ".json"))) {
+      // A result keeps the title that it was run with; the declaration's is the one to be read.
+      (*result)["title"] = run.title;
+      by_name[run.name] = {&run, *result};
+      runs.push_back(std::move(*result));
+    }
+  }
+  json summary = {{"profile", studies.profile}, {"runs", runs}, {"series", json::array()}};
+  for (const char* quantity : quantities) {
+    summary["quantities"][quantity] = {{"relative_u", nullptr}, {"parts", json::object()}};
+    summary["inputs"][quantity] = {{"relative_u", nullptr},
+                                   {"parts", json::object()},
+                                   {"sensitivities", json::object()},
+                                   {"missing", json::array()}};
+  }
+  for (const auto& series : studies.series) {
+    Found found;
+    json missing = json::array();
+    for (const auto& name : series.runs) {
+      if (const auto at = by_name.find(name); at != by_name.end()) {
+        found.push_back(at->second);
+      } else {
+        missing.push_back(name);
+      }
+    }
+    json entry = {{"name", series.name},       {"title", series.title}, {"kind", series.kind},
+                  {"base", series.base},       {"runs", series.runs},   {"about", series.about},
+                  {"counted", series.counted}, {"missing", missing}};
+    if (series.kind == "input") {
+      entry["input"] = input_facts(series);
+    }
+    if (missing.empty()) {
+      for (const char* quantity : quantities) {
+        entry["quantities"][quantity] = of_quantity(series, found, quantity);
+      }
+    }
+    if (series.counted && series.kind != "physics") {
+      count(series, entry, summary);
+    }
+    summary["series"].push_back(std::move(entry));
+  }
+  add_up(summary["quantities"]);
+  add_up(summary["inputs"]);
   return summary;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the studies say of the numerical uncertainty of a pool.
+// What the studies say of the uncertainty of a pool: by its numerics and by its inputs.
 #pragma once
 
 #include <filesystem>
