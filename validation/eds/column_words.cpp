@@ -55,10 +55,10 @@ ColumnWords read_column_header(const std::string& header) {
   const std::string words = lower(header);
   ColumnWords column;
   column.unit = bracketed(header);
-  const bool uncertain = contains(words, {"sigma", "error", "uncert", "+/-", "std"});
+  const bool uncertain = contains(words, {"sigma", "error", "uncert", "+/-", "std", "fehler"});
   if (words.starts_with("concentration") || contains(words, {"alsi10mg"})) {
-    column.role = uncertain || words.starts_with("concentration_u") ? Role::alloy_uncertainty
-                                                                    : Role::alloy;
+    column.role =
+        uncertain || words.starts_with("concentration_u") ? Role::alloy_uncertainty : Role::alloy;
     return column;
   }
   column.element = element_named_in(header);

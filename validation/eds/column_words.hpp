@@ -8,7 +8,16 @@
 namespace meltproof::validation {
 
 /// What a column holds.
-enum class Role { fraction, uncertainty, counts, background, total, alloy, alloy_uncertainty, other };
+enum class Role {
+  fraction,
+  uncertainty,
+  counts,
+  background,
+  total,
+  alloy,
+  alloy_uncertainty,
+  other
+};
 /// Of what a fraction is one; `unknown` names a unit that is neither.
 enum class Share { none, mass, atom, unknown };
 

@@ -13,8 +13,8 @@ using ElementFractions = std::map<std::string, double>;
 /// Mass fractions of the elements in AlSi10Mg: 89.65 % Al, 10 % Si, 0.35 % Mg (nominal).
 const ElementFractions& alsi10mg_composition();
 
-/// Mass fractions of the elements in 316L: the middle of the ranges of UNS S31603 in ASTM A240 (Cr 16
-/// to 18, Ni 10 to 14, Mo 2 to 3, Mn up to 2, Si up to 0.75 %), the rest iron. A measured
+/// Mass fractions of the elements in 316L: the middle of the ranges of UNS S31603 in ASTM A240 (Cr
+/// 16 to 18, Ni 10 to 14, Mo 2 to 3, Mn up to 2, Si up to 0.75 %), the rest iron. A measured
 /// composition of the plate is better.
 const ElementFractions& steel_316l_composition();
 

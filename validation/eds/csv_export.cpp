@@ -59,8 +59,8 @@ std::vector<double> way_along(const ExportedTable& table, const std::string& pla
       position.push_back(0);
     } else {
       const auto& last = table.rows[i - 1];
-      position.push_back(position.back() + std::hypot(unit_x * (row[x] - last[x]),
-                                                      unit_y * (row[y] - last[y])));
+      position.push_back(position.back() +
+                         std::hypot(unit_x * (row[x] - last[x]), unit_y * (row[y] - last[y])));
     }
   }
   return position;
@@ -170,15 +170,21 @@ std::vector<ColumnWords> understand(const ExportedTable& table, LineScan& scan) 
 void read_elements(const ExportedTable& table, const std::vector<ColumnWords>& columns,
                    LineScan& scan) {
   const Share wanted = scan.of_atoms ? Share::atom : Share::mass;
-  const bool unnormalised =
-      std::any_of(columns.begin(), columns.end(), [&](const ColumnWords& c) {
-        return c.role == Role::fraction && c.share == wanted && !c.normalised;
-      });
+  const bool unnormalised = std::any_of(columns.begin(), columns.end(), [&](const ColumnWords& c) {
+    return c.role == Role::fraction && c.share == wanted && !c.normalised;
+  });
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const ColumnWords& words = columns[i];
     if (words.role == Role::fraction && words.share == wanted &&
         !(unnormalised && words.normalised)) {
-      scan.elements[words.element].fraction = values(table, i, 0.01);
+      auto& fraction = scan.elements[words.element].fraction;
+      if (fraction.empty()) {
+        fraction = values(table, i, 0.01);
+      } else {
+        scan.remarks.push_back(
+            fmt::format("the column \"{}\" is a second one of {}: it is passed over.",
+                        table.header[i], words.element));
+      }
     } else if (words.role == Role::total && words.share == wanted) {
       scan.total = values(table, i, 0.01);
     } else if (words.role == Role::counts) {

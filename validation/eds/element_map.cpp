@@ -32,8 +32,7 @@ struct Sampled {
   /// s / sqrt(n); 0 for one sample.
   double standard_error() const {
     const auto n = values.size();
-    return n < 2 ? 0
-                 : gsl_stats_sd(values.data(), 1, n) / std::sqrt(static_cast<double>(n));
+    return n < 2 ? 0 : gsl_stats_sd(values.data(), 1, n) / std::sqrt(static_cast<double>(n));
   }
 };
 
@@ -71,8 +70,7 @@ std::vector<std::array<double, 2>> across(const ElementMap& map, const ScanOptio
 }  // namespace
 
 LineScan sample_map(const ElementMap& map, const ScanOptions::MapLine& line) {
-  const double length =
-      std::hypot(line.end[0] - line.start[0], line.end[1] - line.start[1]);
+  const double length = std::hypot(line.end[0] - line.start[0], line.end[1] - line.start[1]);
   const double pixel = std::min(map.pixel_x, map.pixel_y);
   if (!(pixel > 0) || map.width < 2 || map.height < 2 || !(length >= pixel) || length > 1 ||
       !(line.width >= 0 && line.width < 1)) {

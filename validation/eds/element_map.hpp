@@ -13,8 +13,8 @@ namespace meltproof::validation {
 
 /// One element's map, row by row from the top left; NaN outside the scanned area.
 struct MapLayer {
-  std::vector<double> fraction;     ///< as reported, 1 for 100 %
-  std::vector<double> uncertainty;  ///< standard uncertainty; empty if not reported
+  std::vector<double> fraction;            ///< as reported, 1 for 100 %
+  std::vector<double> uncertainty;         ///< standard uncertainty; empty if not reported
   std::vector<double> counts, background;  ///< net N and background B; empty if not reported
 };
 

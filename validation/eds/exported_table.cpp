@@ -92,9 +92,9 @@ Dialect detect(const std::vector<std::string>& lines) {
   Dialect best;
   std::ptrdiff_t most = 0;
   for (const bool labelled : {false, true}) {
-    for (const auto& [separator, comma] : {std::pair{',', false}, std::pair{';', false},
-                                           std::pair{';', true}, std::pair{'\t', false},
-                                           std::pair{'\t', true}, std::pair{',', true}}) {
+    for (const auto& [separator, comma] :
+         {std::pair{',', false}, std::pair{';', false}, std::pair{';', true},
+          std::pair{'\t', false}, std::pair{'\t', true}, std::pair{',', true}}) {
       const Dialect candidate{separator, comma, labelled};
       const auto rows = std::count_if(lines.begin(), lines.end(), [&](const std::string& line) {
         return is_row(line, candidate);

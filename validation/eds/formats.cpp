@@ -99,10 +99,10 @@ EdsExport read_eds_export(const Path& path) {
   for (const auto& format : eds_formats()) {
     known += (known.empty() ? "" : ", ") + format.name;
   }
-  throw InputError(fmt::format("{}: {}: expected one of {}.", path.string(),
-                               first_bytes.empty() ? "the file is empty"
-                                                   : "its content is of an unknown kind, no text",
-                               known));
+  throw InputError(fmt::format(
+      "{}: {}: expected one of {}.", path.string(),
+      first_bytes.empty() ? "the file is empty" : "its content is of an unknown kind, no text",
+      known));
 }
 
 LineScan read_line_scan(const Path& path, const ScanOptions& options) {
@@ -130,7 +130,8 @@ LineScan read_line_scan(const Path& path, const ScanOptions& options) {
     return scan;
   }
   if (options.map_line) {
-    throw InputError(fmt::format("{}: it is no map, so no line is laid through it.", path.string()));
+    throw InputError(
+        fmt::format("{}: it is no map, so no line is laid through it.", path.string()));
   }
   if (!found.line) {
     throw InputError(fmt::format(
@@ -139,6 +140,22 @@ LineScan read_line_scan(const Path& path, const ScanOptions& options) {
                                                        : "a spectrum"));
   }
   return *found.line;
+}
+
+std::vector<Path> files_of(const Path& path) {
+  if (path.empty()) {
+    return {};
+  }
+  if (std::filesystem::is_directory(path)) {
+    return spectra_of_folder(path);
+  }
+  std::vector<Path> files = {path};
+  const EdsExport found = read_eds_export(path);
+  for (const auto& more : {found.map ? found.map->sources : std::vector<Path>{},
+                           found.line ? found.line->sources : std::vector<Path>{}}) {
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  return files;
 }
 
 }  // namespace meltproof::validation

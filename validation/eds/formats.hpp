@@ -35,4 +35,8 @@ const std::vector<EdsFormat>& eds_formats();
 /// Reads a file by its content. @throws InputError if no format fits, or as that format's reader.
 EdsExport read_eds_export(const std::filesystem::path& path);
 
+/// The files that a measurement at `path` was read from: itself, the spectra of a folder or list,
+/// the maps of a description. Empty for an empty path.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& path);
+
 }  // namespace meltproof::validation

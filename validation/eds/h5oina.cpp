@@ -44,9 +44,9 @@ Grid read_grid(const ArtifactReader& file, const std::string& header) {
   grid.step_y = 1e-6 * file.scalar(header + "Y Step");
   if (!(columns >= 1 && rows >= 1 && columns * rows <= most_cells && grid.step_x > 0 &&
         (rows == 1 || grid.step_y > 0))) {
-    throw InputError(fmt::format(
-        "{}: {} x {} cells in steps of {} and {} um cannot be: the file is damaged.",
-        file.path().string(), columns, rows, 1e6 * grid.step_x, 1e6 * grid.step_y));
+    throw InputError(
+        fmt::format("{}: {} x {} cells in steps of {} and {} um cannot be: the file is damaged.",
+                    file.path().string(), columns, rows, 1e6 * grid.step_x, 1e6 * grid.step_y));
   }
   grid.columns = static_cast<std::size_t>(columns);
   grid.rows = static_cast<std::size_t>(rows);

@@ -28,10 +28,9 @@ void check_totals(LineScan& scan) {
     }
   }
   if (!scan.flagged.empty()) {
-    const bool fractions =
-        scan.flagged.size() == scan.total.size() &&
-        std::all_of(scan.total.begin(), scan.total.end(),
-                    [](double total) { return total > 0.005 && total < 0.015; });
+    const bool fractions = scan.flagged.size() == scan.total.size() &&
+                           std::all_of(scan.total.begin(), scan.total.end(),
+                                       [](double total) { return total > 0.005 && total < 0.015; });
     scan.remarks.push_back(fmt::format(
         "{} of {} points have a total outside 95 to 105 %: they are shown but not compared.{}",
         scan.flagged.size(), scan.total.size(),
@@ -39,9 +38,8 @@ void check_totals(LineScan& scan) {
                   : ""));
   }
   const bool hundred =
-      scan.total.size() > 1 &&
-      std::all_of(scan.total.begin(), scan.total.end(),
-                  [](double total) { return std::abs(total - 1) < 1e-4; });
+      scan.total.size() > 1 && std::all_of(scan.total.begin(), scan.total.end(),
+                                           [](double total) { return std::abs(total - 1) < 1e-4; });
   if (hundred && !scan.of_atoms) {
     scan.remarks.push_back(
         "every total is 100 %: the values were normalised before the export, so the totals say "

@@ -31,7 +31,8 @@ struct LineScan {
   std::vector<std::size_t> flagged;  ///< points whose total lies outside 95 to 105 %
   std::optional<double> voltage;     ///< kV, where the file states it
   bool empty_slot = false;           ///< a slot of data/experiments that holds no point yet
-  std::vector<std::string> remarks;  ///< sentences on what was passed over or is odd
+  std::vector<std::filesystem::path> sources;  ///< other files that it was read from
+  std::vector<std::string> remarks;            ///< sentences on what was passed over or is odd
 };
 
 /// Fills `total` (if empty) and `flagged`, and remarks on totals: outside 95 to 105 %, and 100 % at

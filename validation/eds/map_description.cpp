@@ -75,10 +75,14 @@ ElementMap read_described_map(const std::filesystem::path& path) {
   std::string unit;
   std::deque<Described> described;
   InputTable root("", "element maps of one place, each in its own TIFF or HDF5 data set");
-  root.text(unit, {.name = "unit", .about = "of all maps", .required = true,
-                   .choices = {"wt%", "at%"}});
-  root.quantity(map.pixel_x, {.name = "pixel_size", .unit = "m", .about = "distance of two pixels",
-                              .required = true, .minimum = 1e-12, .maximum = 1e-2});
+  root.text(unit,
+            {.name = "unit", .about = "of all maps", .required = true, .choices = {"wt%", "at%"}});
+  root.quantity(map.pixel_x, {.name = "pixel_size",
+                              .unit = "m",
+                              .about = "distance of two pixels",
+                              .required = true,
+                              .minimum = 1e-12,
+                              .maximum = 1e-2});
   root.quantity(map.voltage, {.name = "voltage", .unit = "kV", .about = "of the electron beam"});
   root.tables(
       "element", "one element's map",

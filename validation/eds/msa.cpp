@@ -33,8 +33,8 @@ struct Header {
     }
     const auto value = number_of(found);
     if (!value || !std::isfinite(*value)) {
-      throw InputError(fmt::format("{}: #{} is \"{}\": expected a number.", place,
-                                   upper(key), found));
+      throw InputError(
+          fmt::format("{}: #{} is \"{}\": expected a number.", place, upper(key), found));
     }
     return value;
   }
@@ -63,9 +63,9 @@ Header read_header(const std::vector<std::string>& lines, const std::string& pla
     const std::string& line = lines[i];
     const auto colon = line.find(':');
     if (!line.starts_with('#') || colon == std::string::npos) {
-      throw InputError(fmt::format(
-          "{}:{}: \"{}\" stands before #SPECTRUM and is no line \"#KEYWORD : value\".", place,
-          i + 1, line.substr(0, 40)));
+      throw InputError(
+          fmt::format("{}:{}: \"{}\" stands before #SPECTRUM and is no line \"#KEYWORD : value\".",
+                      place, i + 1, line.substr(0, 40)));
     }
     // A keyword may name its unit: "#BEAMKV   -kV: 20".
     std::string key = lower(line.substr(1, colon - 1));
@@ -96,20 +96,20 @@ std::vector<double> read_values(const std::vector<std::string>& lines, const Hea
       }
       const auto value = number_of(cell);
       if (!value || !std::isfinite(*value)) {
-        throw InputError(fmt::format("{}:{}: \"{}\" is no number: expected counts.", header.place,
-                                     i + 1, cell));
+        throw InputError(
+            fmt::format("{}:{}: \"{}\" is no number: expected counts.", header.place, i + 1, cell));
       }
       values.push_back(*value);
       cell.clear();
     }
     if (values.size() > 2 * most_channels) {
-      throw InputError(fmt::format("{}: more than {} channels: this is no spectrum.",
-                                   header.place, most_channels));
+      throw InputError(fmt::format("{}: more than {} channels: this is no spectrum.", header.place,
+                                   most_channels));
     }
   }
-  throw InputError(fmt::format(
-      "{}: the file ends without #ENDOFDATA after {} values: it is cut off.", header.place,
-      values.size()));
+  throw InputError(
+      fmt::format("{}: the file ends without #ENDOFDATA after {} values: it is cut off.",
+                  header.place, values.size()));
 }
 
 }  // namespace
@@ -150,9 +150,9 @@ Spectrum read_msa(const std::filesystem::path& path) {
   const std::size_t found = type == "y" ? values.size() : values.size() / 2;
   if (points != static_cast<double>(found) || (type == "xy" && values.size() % 2 != 0) ||
       found < 2) {
-    throw InputError(fmt::format(
-        "{}: #NPOINTS announces {} channels and {} values follow: the file is damaged.",
-        path.string(), points, values.size()));
+    throw InputError(
+        fmt::format("{}: #NPOINTS announces {} channels and {} values follow: the file is damaged.",
+                    path.string(), points, values.size()));
   }
   if (type == "y") {
     spectrum.counts = values;
@@ -165,9 +165,9 @@ Spectrum read_msa(const std::filesystem::path& path) {
     for (std::size_t i = 0; i < found; ++i) {
       const double expected = spectrum.energy(i);
       if (!(std::abs(scale * values[2 * i] - expected) <= 0.5 * spectrum.channel_width)) {
-        throw InputError(fmt::format(
-            "{}: the energies are not evenly spaced (channel {} at {} {}).", path.string(), i,
-            values[2 * i], header.text("xunits")));
+        throw InputError(
+            fmt::format("{}: the energies are not evenly spaced (channel {} at {} {}).",
+                        path.string(), i, values[2 * i], header.text("xunits")));
       }
       spectrum.counts.push_back(values[2 * i + 1]);
     }

@@ -59,6 +59,11 @@ LineScan line_of(const std::filesystem::path& path, const std::vector<Point>& po
       }
     }
   }
+  for (const auto& point : points) {
+    if (point.file != path) {
+      scan.sources.push_back(point.file);
+    }
+  }
   scan.voltage = compositions.front().voltage;
   check_totals(scan);
   return scan;
@@ -116,11 +121,7 @@ LineScan read_point_list(const std::filesystem::path& path) {
   return line_of(path, points);
 }
 
-LineScan read_point_folder(const std::filesystem::path& folder, double spacing) {
-  if (!(spacing > 0)) {
-    throw InputError(fmt::format("{}: points {} um apart are no line: expected a positive spacing.",
-                                 folder.string(), 1e6 * spacing));
-  }
+std::vector<std::filesystem::path> spectra_of_folder(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.is_regular_file() && lower(entry.path().extension().string()) == ".spx") {
@@ -132,15 +133,21 @@ LineScan read_point_folder(const std::filesystem::path& folder, double spacing) 
   }
   std::sort(files.begin(), files.end(),
             [](const auto& a, const auto& b) { return natural(a) < natural(b); });
+  return files;
+}
+
+LineScan read_point_folder(const std::filesystem::path& folder, double spacing) {
+  if (!(spacing > 0)) {
+    throw InputError(fmt::format("{}: points {} um apart are no line: expected a positive spacing.",
+                                 folder.string(), 1e6 * spacing));
+  }
   std::vector<Point> points;
-  for (const auto& file : files) {
+  for (const auto& file : spectra_of_folder(folder)) {
     points.push_back({file, spacing * static_cast<double>(points.size())});
   }
   return line_of(folder, points);
 }
 
-LineScan read_single_point(const std::filesystem::path& path) {
-  return line_of(path, {{path, 0}});
-}
+LineScan read_single_point(const std::filesystem::path& path) { return line_of(path, {{path, 0}}); }
 
 }  // namespace meltproof::validation

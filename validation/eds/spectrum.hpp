@@ -30,11 +30,12 @@ struct Spectrum {
 /// Counts in a window around a K line.
 struct WindowCounts {
   std::string element;
-  double energy = 0;      ///< of the line, keV
-  double gross = 0;       ///< all counts within 100 eV of the line
-  double background = 0;  ///< B: under the straight line between the mean counts of two side windows
-  double net = 0;         ///< N = gross - B
-  double noise = 0;       ///< sqrt(N + 2B), one standard deviation
+  double energy = 0;  ///< of the line, keV
+  double gross = 0;   ///< all counts within 100 eV of the line
+  double background =
+      0;             ///< B: under the straight line between the mean counts of two side windows
+  double net = 0;    ///< N = gross - B
+  double noise = 0;  ///< sqrt(N + 2B), one standard deviation
 };
 
 /// Sum over the channels whose energy lies in [low, high], keV.
@@ -48,7 +49,7 @@ std::vector<WindowCounts> window_counts(const Spectrum& spectrum);
 /// normalised.
 struct PointComposition {
   ElementFractions mass;
-  ElementFractions atom;  ///< empty if not reported
+  ElementFractions atom;                             ///< empty if not reported
   std::map<std::string, double> counts, background;  ///< of each element's line; empty if not there
   std::optional<double> voltage;                     ///< kV
 };

@@ -31,9 +31,9 @@ std::optional<double> number(const pugi::xml_node& node, const char* name,
 double required(const pugi::xml_node& node, const char* name, const std::string& place) {
   const auto value = number(node, name, place);
   if (!value) {
-    throw InputError(fmt::format(
-        "{}: <{}> is missing in <{} Type=\"{}\">: save the spectrum again in Esprit.", place, name,
-        node.name(), node.attribute("Type").value()));
+    throw InputError(
+        fmt::format("{}: <{}> is missing in <{} Type=\"{}\">: save the spectrum again in Esprit.",
+                    place, name, node.name(), node.attribute("Type").value()));
   }
   return *value;
 }
@@ -66,9 +66,8 @@ PointComposition composition(const pugi::xml_node& results, const std::string& p
     const Element* found =
         atom >= 1 && atom <= 120 ? element_of_number(static_cast<int>(atom)) : nullptr;
     if (found == nullptr) {
-      throw InputError(
-          fmt::format("{}: a result is of the element with number {}, which is not known here.",
-                      place, atom));
+      throw InputError(fmt::format(
+          "{}: a result is of the element with number {}, which is not known here.", place, atom));
     }
     point.mass[found->symbol] = required(result, "MassPercent", place);
     sum += point.mass[found->symbol];
@@ -121,8 +120,8 @@ SpxContent read_spx(const std::filesystem::path& path) {
   const double announced = required(header, "ChannelCount", place);
   if (announced != static_cast<double>(content.spectrum.counts.size()) ||
       !(content.spectrum.channel_width > 0)) {
-    throw InputError(fmt::format("{}: <ChannelCount> announces {} channels and {} are there.", place,
-                                 announced, content.spectrum.counts.size()));
+    throw InputError(fmt::format("{}: <ChannelCount> announces {} channels and {} are there.",
+                                 place, announced, content.spectrum.counts.size()));
   }
   content.spectrum.voltage = number(instance(root, "TRTESMAHeader"), "PrimaryEnergy", place);
   if (const auto time = number(instance(root, "TRTSpectrumHardwareHeader"), "LifeTime", place)) {

@@ -110,7 +110,8 @@ Layer read_tiff_layer(const std::filesystem::path& path) {
   const tmsize_t size = tiled ? TIFFTileSize(tiff.get()) : TIFFStripSize(tiff.get());
   const std::uint64_t expected = std::uint64_t{part_width} * part_height * bytes;
   if (size <= 0 || part_width == 0 || part_height == 0 ||
-      static_cast<std::uint64_t>(size) != expected || expected > most_gain * file_size + (1 << 20)) {
+      static_cast<std::uint64_t>(size) != expected ||
+      expected > most_gain * file_size + (1 << 20)) {
     throw damaged("its parts do not fit its size");
   }
   std::vector<std::uint8_t> part(expected);
@@ -118,8 +119,8 @@ Layer read_tiff_layer(const std::filesystem::path& path) {
     for (std::uint32_t x = 0; x < width; x += part_width) {
       const std::uint32_t rows = std::min(part_height, height - y);
       const std::uint32_t columns = std::min(part_width, width - x);
-      const auto wanted = static_cast<tmsize_t>(
-          tiled ? expected : std::uint64_t{rows} * part_width * bytes);
+      const auto wanted =
+          static_cast<tmsize_t>(tiled ? expected : std::uint64_t{rows} * part_width * bytes);
       const tmsize_t got =
           tiled ? TIFFReadEncodedTile(tiff.get(), TIFFComputeTile(tiff.get(), x, y, 0, 0),
                                       part.data(), wanted)
