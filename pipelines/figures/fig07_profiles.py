@@ -31,7 +31,7 @@ def draw_simulated(axes, simulated):
 
 
 def draw_measured(axes, scan):
-    """The points at their places on the simulated line, so that the registration is seen; returns the largest."""
+    """The points at their places on the simulated line, so that the registration is seen; returns their bounds."""
     measured, compared = scan["measured"], scan["compared"]
     place = np.array(compared.get("place_on_simulated_line_um", compared["position_um"]))
     at = {round(x, 9): k for k, x in enumerate(measured["position_um"])}
@@ -44,7 +44,7 @@ def draw_measured(axes, scan):
     if flagged and not scan["registration"]["reversed"]:
         axes.plot(np.array(measured["position_um"])[flagged] + scan["registration"]["shift_um"], values[flagged],
                   linestyle="none", marker="x", color=style.BLACK, label="total off, not compared")
-    return np.nanmax(values)
+    return np.nanmin(values), np.nanmax(values)
 
 
 def draw_residuals(axes, scan, limits):
@@ -96,13 +96,14 @@ def plot(axes, below, path, letter):
     direction = artifact.value(artifact.value(scan, "line", path), "direction", path)
     axes.set(ylabel="AlSi10Mg [wt%]")
     axes.set_title(f"{letter}  " + {"depth": "In depth", "lateral": "Lateral"}.get(direction, "Along a given line"))
-    most = draw_simulated(axes, artifact.value(scan, "simulated", path))
+    least, most = 0, draw_simulated(axes, artifact.value(scan, "simulated", path))
     if scan.get("measured"):
-        most = max(most, draw_measured(axes, scan))
+        lowest, highest = draw_measured(axes, scan)
+        least, most = min(0, 1.3 * lowest), max(most, highest)
     else:
         axes.text(0.98, 0.68, "measurement pending:\nFig. 7 is not public\nas numbers", transform=axes.transAxes,
                   ha="right", va="top", fontsize=7, style="italic", bbox=style.PENDING_BOX)
-    axes.set_ylim(0, max(1.0, 1.25 * most))
+    axes.set_ylim(least, max(1.0, 1.25 * most))  # what noise carries below nothing stays visible
     axes.legend(loc="upper right", fontsize=6.5)
     if below:
         draw_residuals(below, scan, axes.get_xlim())

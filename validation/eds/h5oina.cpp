@@ -32,16 +32,27 @@ std::string find_technique(const ArtifactReader& file) {
       file.path().string()));
 }
 
+/// One number, which is stored as an array of one.
+double number(const ArtifactReader& file, const std::string& name) {
+  for (const auto length : file.shape(name)) {
+    if (length != 1) {
+      throw InputError(fmt::format("{}: {} is no single number: the file is damaged.",
+                                   file.path().string(), name));
+    }
+  }
+  return file.scalar(name);
+}
+
 struct Grid {
   std::size_t columns = 0, rows = 0;
   double step_x = 0, step_y = 0;  // m
 };
 
 Grid read_grid(const ArtifactReader& file, const std::string& header) {
-  const double columns = file.scalar(header + "X Cells"), rows = file.scalar(header + "Y Cells");
+  const double columns = number(file, header + "X Cells"), rows = number(file, header + "Y Cells");
   Grid grid;
-  grid.step_x = 1e-6 * file.scalar(header + "X Step");
-  grid.step_y = 1e-6 * file.scalar(header + "Y Step");
+  grid.step_x = 1e-6 * number(file, header + "X Step");
+  grid.step_y = 1e-6 * number(file, header + "Y Step");
   if (!(columns >= 1 && rows >= 1 && columns * rows <= most_cells && grid.step_x > 0 &&
         (rows == 1 || grid.step_y > 0))) {
     throw InputError(
@@ -138,7 +149,7 @@ std::variant<LineScan, ElementMap> read_h5oina(const std::filesystem::path& path
   map.pixel_x = grid.step_x;
   map.pixel_y = grid.rows == 1 ? grid.step_x : grid.step_y;
   if (file.has(header + "Beam Voltage")) {
-    map.voltage = file.scalar(header + "Beam Voltage");
+    map.voltage = number(file, header + "Beam Voltage");
   }
   const std::string composition = data + "Composition";
   if (!file.has(composition)) {

@@ -79,8 +79,8 @@ TEST(LocalMatrix, OfOneDensityIsAGaussian) {
 TEST(LocalMatrix, BlursAluminiumWidelyAndIronNarrowlyAndKeepsTheMass) {
   const double step = 0.02e-6, range = anderson_hasler_range(iron.density, 30, aluminium_k_edge);
   std::vector<double> profile, density;
-  for (int i = 0; i < 2000; ++i) {  // 40 um: iron, and a strip of aluminium from 16 to 24 um
-    profile.push_back(i < 800 || i >= 1200 ? 0 : 1);
+  for (int i = 0; i < 2600; ++i) {  // 52 um: iron, and a strip of aluminium from 16 to 36 um
+    profile.push_back(i < 800 || i >= 1800 ? 0 : 1);
     density.push_back(mixture_density(profile.back()));
   }
   const auto seen =

@@ -84,15 +84,15 @@ double best_shift(const Interpolation& profile, const Points& points, double bou
   return cost(refined) < cost(best) ? refined : best;
 }
 
-/// The place of the steepest crossing of the level halfway between the smallest and the largest
-/// value.
-double half_height(std::span<const double> x, std::span<const double> y, const char* which) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double value : y) {
-    low = std::isnan(value) ? low : std::min(low, value);
-    high = std::isnan(value) ? high : std::max(high, value);
-  }
-  const double level = 0.5 * (low + high);
+/// Halfway between the smallest and the largest value.
+double middle_level(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return 0.5 * (*low + *high);
+}
+
+/// The place where a profile crosses the level most steeply.
+double steepest_crossing(const std::vector<double>& x, const std::vector<double>& y, double level,
+                         const char* which) {
   double steepest = 0, place = 0;
   for (std::size_t i = 1; i < x.size(); ++i) {
     const double rise = y[i] - y[i - 1], slope = std::abs(rise / (x[i] - x[i - 1]));
@@ -103,9 +103,9 @@ double half_height(std::span<const double> x, std::span<const double> y, const c
   }
   if (!(steepest > 0)) {
     throw InputError(fmt::format(
-        "--landmark: the {} profile is flat or has gaps, so it has no half height: name the places "
-        "instead, \"SIMULATED, MEASURED\".",
-        which));
+        "--landmark: the {} profile does not cross {:.4g}, halfway between the measured extremes: "
+        "name the places instead, \"SIMULATED, MEASURED\".",
+        which, level));
   }
   return place;
 }
@@ -115,8 +115,9 @@ double landmark_shift(const Interpolation& profile, const Interpolation& forward
                       const Landmark& landmark, const Points& points, double bound) {
   double simulated = landmark.simulated, measured = landmark.measured;
   if (landmark.half_height) {
-    simulated = half_height(profile.x, profile.y, "simulated");
-    measured = half_height(points.position, points.measured, "measured");
+    const double level = middle_level(points.measured);
+    simulated = steepest_crossing(profile.x, profile.y, level, "simulated");
+    measured = steepest_crossing(points.position, points.measured, level, "measured");
   } else if (&profile != &forward) {
     simulated = forward.x.front() + forward.x.back() - simulated;
   }

@@ -12,8 +12,8 @@ namespace meltproof::validation {
 
 /// A feature that both lines show, instead of the best fit.
 struct Landmark {
-  /// Where each profile has its steepest crossing of the level halfway between its own smallest and
-  /// largest value; otherwise the places below.
+  /// Where each profile crosses one level most steeply, halfway between the smallest and the
+  /// largest measured value; otherwise the places below.
   bool half_height = true;
   double simulated = 0;  ///< m along the simulated line
   double measured = 0;   ///< m along the measured one

@@ -74,7 +74,7 @@ TEST(Registration, MayFollowALandmark) {
   RegistrationBounds bounds{.shift = 3e-6, .landmark = Landmark{}};
   const auto half = register_profiles(s.x, s.y, d.x, d.y, {}, {}, bounds);
   EXPECT_TRUE(half.by_landmark);
-  EXPECT_NEAR(half.shift, 1.3e-6, 0.1e-6);  // half height between points 0.86 um apart
+  EXPECT_NEAR(half.shift, 1.3e-6, 0.05e-6);  // between points 0.86 um apart
   EXPECT_EQ(half.fitted, 1u);
   bounds.landmark = Landmark{false, 8e-6, 6.7e-6};
   const auto named = register_profiles(s.x, s.y, d.x, d.y, {}, {}, bounds);
