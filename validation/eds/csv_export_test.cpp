@@ -82,6 +82,15 @@ TEST(CsvExport, AConcentrationThatTheFileStatesItself) {
   EXPECT_REFUSED(read("position [um],concentration [g]\n0,60\n1,40\n"), "has the unit \"g\"");
 }
 
+TEST(CsvExport, EmptyCellsAtTheEndAreNotKnown) {
+  const auto scan =
+      read("position [um],concentration [%],concentration_u [%]\n0,60,\n1,40,2\n2,,\n");
+  EXPECT_TRUE(std::isnan(scan.alloy->uncertainty[0]));
+  EXPECT_DOUBLE_EQ(scan.alloy->uncertainty[1], 0.02);
+  EXPECT_EQ(scan.flagged, std::vector<std::size_t>{2});
+  EXPECT_REFUSED(read("Distance (um),Al Wt%,Fe Wt%\n0,,80\n1,20,80\n"), "is no number");
+}
+
 TEST(CsvExport, AColumnWithTheWrongUnitIsNamed) {
   const auto scan = read("Distance (um),Al (ppm),Al Wt%,Fe Wt%\n0,1,20,80\n1,1,10,90\n");
   ASSERT_FALSE(scan.remarks.empty());

@@ -137,8 +137,26 @@ ExportedTable read_exported_table(const std::filesystem::path& path) {
     throw InputError(fmt::format(
         "{}: there is no row of numbers: expected a line scan exported as CSV.", place));
   }
+  if (begin > 0 && !dialect.labelled) {
+    // A row with a hole in it must not pass for a header.
+    const auto above = cells_of(lines[begin - 1], dialect.separator);
+    if (above.size() > 1 && number_of(above.front(), dialect.decimal_comma)) {
+      throw InputError(fmt::format(
+          "{}:{}: the line begins with a number, but one of its cells is no number: expected a row "
+          "of numbers, of which only the last cells may be empty.",
+          place, begin));
+    }
+  }
   table.first_line = begin + 1;
-  const auto columns = cells_of(lines[begin], dialect.separator).size();
+  auto columns = cells_of(lines[begin], dialect.separator).size();
+  const auto cells_with_blanks = [&](std::size_t line) {
+    return split_cells(lines[line], dialect.separator).size();
+  };
+  if (begin > 0 &&
+      cells_with_blanks(begin) >= cells_of(lines[begin - 1], dialect.separator).size()) {
+    // Its last cells may be empty, which means not known.
+    columns = std::max(columns, cells_of(lines[begin - 1], dialect.separator).size());
+  }
   for (std::size_t i = begin; i < lines.size() && !trimmed(lines[i]).empty(); ++i) {
     const auto cells = cells_of(lines[i], dialect.separator);
     std::vector<double> row;
@@ -152,6 +170,9 @@ ExportedTable read_exported_table(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}:{}: \"{}\" is no number.", place, i + 1, cell));
       }
       row.push_back(*value);
+    }
+    while (row.size() < columns && row.size() < cells_with_blanks(i)) {
+      row.push_back(std::numeric_limits<double>::quiet_NaN());
     }
     if (row.size() != columns) {
       throw InputError(fmt::format("{}:{}: found {} cells where the first row has {}.", place,

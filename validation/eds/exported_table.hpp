@@ -11,9 +11,10 @@ namespace meltproof::validation {
 /// The rows of numbers and the header above them.
 struct ExportedTable {
   std::vector<std::string> header;  ///< one per column; two header lines are joined by a blank
-  std::vector<std::vector<double>> rows;  ///< NaN in a first column of labels
-  std::string preamble;                   ///< the lines above the header, lower case
-  std::size_t first_line = 0;             ///< of the rows, counted from 1
+  /// NaN in a first column of labels, and for empty cells at the end of a row: not known.
+  std::vector<std::vector<double>> rows;
+  std::string preamble;        ///< the lines above the header, lower case
+  std::size_t first_line = 0;  ///< of the rows, counted from 1
 };
 
 /// Finds separator (comma, semicolon, tab) and decimal sign by which most lines are rows of

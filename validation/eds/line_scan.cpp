@@ -11,6 +11,12 @@ namespace meltproof::validation {
 void check_totals(LineScan& scan) {
   if (scan.alloy) {
     scan.total.assign(scan.position.size(), 1);
+    scan.flagged.clear();
+    for (std::size_t i = 0; i < scan.alloy->fraction.size(); ++i) {
+      if (!std::isfinite(scan.alloy->fraction[i])) {
+        scan.flagged.push_back(i);  // not known
+      }
+    }
     return;
   }
   if (scan.total.empty()) {

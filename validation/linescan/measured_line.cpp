@@ -64,16 +64,27 @@ ConcentrationProfile stated(const LineScan& scan) {
   return {scan.position, scan.alloy->fraction, scan.alloy->uncertainty, {}};
 }
 
+/// Whether a point that is compared has no positive uncertainty.
+bool lacks_one(const LineScan& scan, const std::vector<double>& u) {
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (!(u[i] > 0) &&
+        std::find(scan.flagged.begin(), scan.flagged.end(), i) == scan.flagged.end()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void check_uncertainty(MeasuredLine& line, const std::string& place) {
   auto& u = line.profile.uncertainty;
-  if (std::any_of(u.begin(), u.end(), [](double value) { return !(value > 0); })) {
+  if (lacks_one(line.scan, u)) {
     line.warnings.push_back(
         {"zero_uncertainty",
-         fmt::format("{}: some uncertainties are zero, so none is used.", place)});
+         fmt::format("{}: some uncertainties are zero or missing, so none is used.", place)});
     u.clear();
   }
   auto& counting = line.profile.counting;
-  if (std::any_of(counting.begin(), counting.end(), [](double value) { return !(value > 0); })) {
+  if (lacks_one(line.scan, counting)) {
     counting.clear();  // a point without counts has no relative noise
   }
   if (u.empty() && counting.empty()) {

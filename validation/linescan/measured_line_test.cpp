@@ -58,6 +58,15 @@ TEST(MeasuredLine, NamesWhatIsMissingOrOdd) {
       "every point has a total outside");
 }
 
+TEST(MeasuredLine, APointThatIsNotComparedNeedsNoUncertainty) {
+  const auto line = read_measured_line(
+      request("position [um],concentration [%],concentration_u [%]\n0,60,2\n1,,\n2,40,2\n"));
+  EXPECT_FALSE(holds(line.warnings, "zero_uncertainty"));
+  const auto missing = read_measured_line(
+      request("position [um],concentration [%],concentration_u [%]\n0,60,2\n1,50,\n2,40,2\n"));
+  EXPECT_TRUE(holds(missing.warnings, "zero_uncertainty"));
+}
+
 TEST(SpectrumReport, ShowsTheVendorsCompositionAndWindows) {
   MeasuredRequest wanted;
   wanted.path = vendor_file("bruker_nano.spx");
