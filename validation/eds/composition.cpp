@@ -4,21 +4,10 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "validation/eds/elements.hpp"
 
 namespace meltproof::validation {
 namespace {
-
-const std::map<std::string, double>& atomic_weights() {
-  static const std::map<std::string, double> weights = {
-      {"H", 1.008},   {"B", 10.81},   {"C", 12.011},  {"N", 14.007},  {"O", 15.999},
-      {"F", 18.998},  {"Na", 22.990}, {"Mg", 24.305}, {"Al", 26.982}, {"Si", 28.085},
-      {"P", 30.974},  {"S", 32.06},   {"Cl", 35.45},  {"K", 39.098},  {"Ca", 40.078},
-      {"Ti", 47.867}, {"V", 50.942},  {"Cr", 51.996}, {"Mn", 54.938}, {"Fe", 55.845},
-      {"Co", 58.933}, {"Ni", 58.693}, {"Cu", 63.546}, {"Zn", 65.38},  {"Zr", 91.224},
-      {"Nb", 92.906}, {"Mo", 95.95},  {"Sn", 118.71}, {"Ta", 180.95}, {"W", 183.84},
-  };
-  return weights;
-}
 
 /// Every fraction times `factor(symbol)`, scaled to a sum of 1.
 template <class Factor>
@@ -45,16 +34,10 @@ const ElementFractions& alsi10mg_composition() {
   return composition;
 }
 
-bool is_element(const std::string& symbol) { return atomic_weights().contains(symbol); }
-
-double atomic_weight(const std::string& symbol) {
-  const auto at = atomic_weights().find(symbol);
-  if (at == atomic_weights().end()) {
-    throw InputError(fmt::format(
-        "\"{}\" is no element whose atomic weight is known here: expected a symbol such as Al.",
-        symbol));
-  }
-  return at->second;
+const ElementFractions& steel_316l_composition() {
+  static const ElementFractions composition = {{"Fe", 0.67125}, {"Cr", 0.17}, {"Ni", 0.12},
+                                               {"Mo", 0.025},   {"Mn", 0.01}, {"Si", 0.00375}};
+  return composition;
 }
 
 ElementFractions atom_from_mass(const ElementFractions& mass) {

@@ -13,14 +13,13 @@ using ElementFractions = std::map<std::string, double>;
 /// Mass fractions of the elements in AlSi10Mg: 89.65 % Al, 10 % Si, 0.35 % Mg (nominal).
 const ElementFractions& alsi10mg_composition();
 
-/// Standard atomic weight in g/mol (IUPAC 2021, abridged) of an element that steels and aluminium
-/// alloys hold. @throws InputError for an unknown symbol.
-double atomic_weight(const std::string& symbol);
-/// Whether atomic_weight() knows it.
-bool is_element(const std::string& symbol);
+/// Mass fractions of the elements in 316L: the middle of the ranges of UNS S31603 in ASTM A240 (Cr
+/// 16 to 18, Ni 10 to 14, Mo 2 to 3, Mn up to 2, Si up to 0.75 %), the rest iron. A measured
+/// composition of the plate is better.
+const ElementFractions& steel_316l_composition();
 
-/// a_i = (w_i / A_i) / sum (w_k / A_k); the masses need not add to 1. @throws InputError as
-/// atomic_weight(), or if nothing is there.
+/// a_i = (w_i / A_i) / sum (w_k / A_k); the masses need not add to 1. @throws InputError for an
+/// unknown element, or if nothing is there.
 ElementFractions atom_from_mass(const ElementFractions& mass);
 /// w_i = a_i A_i / sum a_k A_k.
 ElementFractions mass_from_atom(const ElementFractions& atom);

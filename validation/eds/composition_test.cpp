@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/eds/composition.hpp"
 
-#include <regex>
-
 #include <gtest/gtest.h>
 
-#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 
 namespace meltproof::validation {
@@ -25,28 +22,6 @@ TEST(Composition, AgreesWithAVendorsQuantification) {
   EXPECT_NEAR(atoms.at("S"), 0.4176372, 5e-5);
   EXPECT_NEAR(atoms.at("Fe"), 0.2787832, 5e-5);
   EXPECT_NEAR(atoms.at("Cu"), 0.3035796, 5e-5);
-}
-
-TEST(Composition, AgreesWithTheVendorsFileItself) {
-  const std::string path = "../shared/samples/bruker_nano.spx";
-  if (!std::filesystem::exists(path)) {
-    GTEST_SKIP() << "the vendors' sample files are not beside this checkout";
-  }
-  const std::string text = read_file(path);
-  const std::regex result(
-      "<Atom>(\\d+)</Atom>\\s*<XLine>[^<]*</XLine>\\s*<AtomPercent>([^<]*)</AtomPercent>\\s*"
-      "<MassPercent>([^<]*)</MassPercent>");
-  const std::map<int, std::string> symbols = {{16, "S"}, {26, "Fe"}, {29, "Cu"}};
-  ElementFractions mass, atoms;
-  for (std::sregex_iterator at(text.begin(), text.end(), result), end; at != end; ++at) {
-    const auto& symbol = symbols.at(std::stoi((*at)[1]));
-    atoms[symbol] = std::stod((*at)[2]);
-    mass[symbol] = std::stod((*at)[3]);
-  }
-  ASSERT_EQ(mass.size(), 3u);
-  for (const auto& [symbol, value] : atom_from_mass(mass)) {
-    EXPECT_NEAR(value, atoms.at(symbol), 5e-5) << symbol;
-  }
 }
 
 TEST(Composition, ConcentrationFromBothElementsOfTheAlloy) {

@@ -27,6 +27,19 @@ double anderson_hasler_range(double density, double beam_energy_kev, double edge
          (1e-3 * density);
 }
 
+double mixture_density(double concentration) {
+  const double c = std::clamp(concentration, 0.0, 1.0);
+  return 1 / (c / aluminium.density + (1 - c) / iron.density);
+}
+
+double kanaya_okayama_range_in_mixture(double concentration, double beam_energy_kev) {
+  const double c = std::clamp(concentration, 0.0, 1.0);
+  const auto loss = [&](const Target& target) {
+    return 1 / (target.density * kanaya_okayama_range(target, beam_energy_kev));
+  };
+  return 1 / ((c * loss(aluminium) + (1 - c) * loss(iron)) * mixture_density(concentration));
+}
+
 double interaction_sigma(double range) { return range / (2 * std::sqrt(2 * std::log(2.0))); }
 
 std::vector<double> convolve_gaussian(std::span<const double> values, double step, double sigma) {
@@ -64,6 +77,44 @@ std::vector<double> convolve_gaussian(std::span<const double> values, double ste
       }
     }
     seen[static_cast<std::size_t>(i)] = sum / weight;
+  }
+  return seen;
+}
+
+std::vector<double> convolve_in_matrix(std::span<const double> values,
+                                       std::span<const double> densities, double step,
+                                       double sigma_mass) {
+  if (!(step > 0 && sigma_mass >= 0) || values.size() != densities.size()) {
+    throw InputError(fmt::format(
+        "{} values with {} densities in steps of {} cannot be seen with a Gaussian of {} kg/m2: "
+        "expected equal numbers, a positive step and no negative width.",
+        values.size(), densities.size(), step, sigma_mass));
+  }
+  std::vector<double> seen(values.begin(), values.end());
+  if (sigma_mass == 0) {
+    return seen;
+  }
+  // Edges of the cells in mass per area; cell i lies between edge i and i + 1.
+  std::vector<double> edge = {0};
+  for (const double density : densities) {
+    edge.push_back(edge.back() + density * step);
+  }
+  const double scale = 1 / (sigma_mass * std::sqrt(2.0));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) {
+      continue;
+    }
+    const double beam = 0.5 * (edge[i] + edge[i + 1]);
+    double sum = 0, weight = 0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      if (!std::isnan(values[j])) {
+        const double w =
+            std::erf((edge[j + 1] - beam) * scale) - std::erf((edge[j] - beam) * scale);
+        sum += w * values[j];
+        weight += w;
+      }
+    }
+    seen[i] = sum / weight;
   }
   return seen;
 }

@@ -27,6 +27,15 @@ double kanaya_okayama_range(const Target& target, double beam_energy_kev);
 /// @throws InputError if the beam's energy is not above the edge.
 double anderson_hasler_range(double density, double beam_energy_kev, double edge_energy_kev);
 
+/// Density in kg m-3 of a mixture whose mass fraction `concentration` is AlSi10Mg (taken as
+/// aluminium) and the rest steel (taken as iron): volumes add, 1/rho = C/rho_Al + (1 - C)/rho_Fe.
+/// Beyond 0 and 1, where noise may carry C, it is that of the nearer end.
+double mixture_density(double concentration);
+
+/// The range of electrons in such a mixture: 1/(rho R) is the mean of that of the two elements,
+/// weighted by mass, as energy losses per mass add. @returns m
+double kanaya_okayama_range_in_mixture(double concentration, double beam_energy_kev);
+
 /// Standard deviation in m of the Gaussian that stands for a generation range: the range is taken
 /// as the full width at half maximum, sigma = range / (2 sqrt(2 ln 2)). A modelling choice: the
 /// range is a size of the volume, its distribution within is not Gaussian.
@@ -38,5 +47,19 @@ double interaction_sigma(double range);
 /// places.
 /// @throws InputError if step is not positive or sigma negative.
 std::vector<double> convolve_gaussian(std::span<const double> values, double step, double sigma);
+
+/// The same where the matrix, and with it the width, varies along the line. The range of X-rays is
+/// inverse to the density, so the volume has one width in mass per area, m(x) = int rho dx: the
+/// profile is convolved with a Gaussian of `sigma_mass` over m. Steel beside aluminium is then seen
+/// with a narrow flank on its own side and a wide one on the other. What is conserved: the beam
+/// spends all its electrons at each place (weights add to 1: a uniform sample is seen uniform), and
+/// since the kernel is symmetric in m, the mass int rho C dx stays as well.
+/// @param densities kg m-3 at every point; also where there is no material, as which the beam's way
+///        through it counts
+/// @param sigma_mass kg m-2
+/// @throws InputError as convolve_gaussian(), or if the lengths differ.
+std::vector<double> convolve_in_matrix(std::span<const double> values,
+                                       std::span<const double> densities, double step,
+                                       double sigma_mass);
 
 }  // namespace meltproof::validation

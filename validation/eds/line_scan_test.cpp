@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "validation/eds/concentration.hpp"
 
 namespace meltproof::validation {
 namespace {

@@ -39,6 +39,7 @@ Interpolation turned(const Interpolation& profile) {
 
 struct Points {
   std::vector<double> position, measured, uncertainty;
+  std::vector<std::size_t> index;
 };
 
 bool usable(const Interpolation& profile, double at, double shift) {
@@ -83,6 +84,53 @@ double best_shift(const Interpolation& profile, const Points& points, double bou
   return cost(refined) < cost(best) ? refined : best;
 }
 
+/// Halfway between the smallest and the largest value.
+double middle_level(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return 0.5 * (*low + *high);
+}
+
+/// The place where a profile crosses the level most steeply.
+double steepest_crossing(const std::vector<double>& x, const std::vector<double>& y, double level,
+                         const char* which) {
+  double steepest = 0, place = 0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    const double rise = y[i] - y[i - 1], slope = std::abs(rise / (x[i] - x[i - 1]));
+    if ((y[i - 1] - level) * (y[i] - level) <= 0 && slope > steepest) {
+      steepest = slope;
+      place = x[i - 1] + (level - y[i - 1]) / rise * (x[i] - x[i - 1]);
+    }
+  }
+  if (!(steepest > 0)) {
+    throw InputError(fmt::format(
+        "--landmark: the {} profile does not cross {:.4g}, halfway between the measured extremes: "
+        "name the places instead, \"SIMULATED, MEASURED\".",
+        which, level));
+  }
+  return place;
+}
+
+/// The shift that brings the landmarks together on the profile as given or turned.
+double landmark_shift(const Interpolation& profile, const Interpolation& forward,
+                      const Landmark& landmark, const Points& points, double bound) {
+  double simulated = landmark.simulated, measured = landmark.measured;
+  if (landmark.half_height) {
+    const double level = middle_level(points.measured);
+    simulated = steepest_crossing(profile.x, profile.y, level, "simulated");
+    measured = steepest_crossing(points.position, points.measured, level, "measured");
+  } else if (&profile != &forward) {
+    simulated = forward.x.front() + forward.x.back() - simulated;
+  }
+  const double shift = simulated - measured;
+  if (std::abs(shift) > bound * (1 + 1e-9)) {
+    throw InputError(fmt::format(
+        "--landmark: the landmarks lie {:.4g} um apart and the shift may be {:.4g} um: allow more "
+        "with --shift, or name other landmarks.",
+        1e6 * shift, 1e6 * bound));
+  }
+  return shift;
+}
+
 }  // namespace
 
 Registration register_profiles(std::span<const double> simulated_position,
@@ -103,6 +151,7 @@ Registration register_profiles(std::span<const double> simulated_position,
         (!bounds.reversible || usable(backward, at, bounds.shift))) {
       points.position.push_back(at);
       points.measured.push_back(measured[i]);
+      points.index.push_back(i);
       if (!uncertainty.empty()) {
         points.uncertainty.push_back(uncertainty[i]);
       }
@@ -117,10 +166,17 @@ Registration register_profiles(std::span<const double> simulated_position,
   Registration result;
   result.fitted = (bounds.shift > 0 ? 1 : 0) + (bounds.reversible ? 1 : 0);
   result.before = metrics(forward, points, 0, 0);
-  result.shift = bounds.shift > 0 ? best_shift(forward, points, bounds.shift) : 0;
+  result.by_landmark = bounds.landmark.has_value();
+  const auto shift_of = [&](const Interpolation& profile) {
+    return bounds.landmark
+               ? landmark_shift(profile, forward, *bounds.landmark, points, bounds.shift)
+           : bounds.shift > 0 ? best_shift(profile, points, bounds.shift)
+                              : 0;
+  };
+  result.shift = shift_of(forward);
   const Interpolation* chosen = &forward;
   if (bounds.reversible) {
-    const double other = bounds.shift > 0 ? best_shift(backward, points, bounds.shift) : 0;
+    const double other = shift_of(backward);
     if (metrics(backward, points, other, 0).root_mean_square <
         metrics(forward, points, result.shift, 0).root_mean_square) {
       result.shift = other;
@@ -131,8 +187,12 @@ Registration register_profiles(std::span<const double> simulated_position,
   result.after = metrics(*chosen, points, result.shift, result.fitted);
   result.position = points.position;
   result.measured = points.measured;
+  result.index = points.index;
   for (const double at : points.position) {
     result.simulated.push_back((*chosen)(at + result.shift));
+    result.simulated_before.push_back(forward(at));
+    const double place = at + result.shift;
+    result.place.push_back(result.reversed ? forward.x.front() + forward.x.back() - place : place);
   }
   return result;
 }

@@ -69,6 +69,36 @@ TEST(Registration, TurnsALineOnlyIfAllowed) {
   EXPECT_EQ(r.fitted, 1u);
 }
 
+TEST(Registration, MayFollowALandmark) {
+  const auto s = erfc_profile(0, 401), d = erfc_profile(1.3e-6, 15, 4e-6, 16e-6);
+  RegistrationBounds bounds{.shift = 3e-6, .landmark = Landmark{}};
+  const auto half = register_profiles(s.x, s.y, d.x, d.y, {}, {}, bounds);
+  EXPECT_TRUE(half.by_landmark);
+  EXPECT_NEAR(half.shift, 1.3e-6, 0.05e-6);  // between points 0.86 um apart
+  EXPECT_EQ(half.fitted, 1u);
+  bounds.landmark = Landmark{false, 8e-6, 6.7e-6};
+  const auto named = register_profiles(s.x, s.y, d.x, d.y, {}, {}, bounds);
+  EXPECT_NEAR(named.shift, 1.3e-6, 1e-15);
+  EXPECT_LT(named.after.root_mean_square, 1e-4);
+  bounds.landmark = Landmark{false, 9e-6, 5e-6};
+  EXPECT_THROW(register_profiles(s.x, s.y, d.x, d.y, {}, {}, bounds), InputError);
+  const std::vector<double> flat(15, 0.5);
+  bounds.landmark = Landmark{};
+  EXPECT_THROW(register_profiles(s.x, s.y, d.x, flat, {}, {}, bounds), InputError);
+}
+
+TEST(Registration, SaysWhereTheSimulatedLineIsRead) {
+  const auto s = erfc_profile(0, 401);
+  auto d = erfc_profile(0, 15, 4e-6, 16e-6);
+  for (double& x : d.x) {
+    x = 20e-6 - x;
+  }
+  const auto r = register_profiles(s.x, s.y, d.x, d.y, {}, {}, {.shift = 0, .reversible = true});
+  EXPECT_NEAR(r.place[0], 4e-6, 1e-12);
+  EXPECT_EQ(r.index[14], 14u);
+  EXPECT_GT(std::abs(r.simulated_before[0] - r.measured[0]), 0.3);
+}
+
 TEST(Registration, ComparesTheSamePointsForEveryShift) {
   auto s = erfc_profile(0, 401);
   const auto d = erfc_profile(0, 21);  // 0 to 20 um, every 1 um

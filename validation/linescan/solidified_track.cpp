@@ -40,23 +40,6 @@ double distance(const Point& a, const Point& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// The particles within `reach` of the line: few against the whole track.
-std::vector<std::size_t> near_line(const SolidifiedTrack& track, const Point& start,
-                                   const Point& end, double reach) {
-  std::vector<std::size_t> near;
-  for (std::size_t i = 0; i < track.position.size(); ++i) {
-    bool inside = true;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const auto [low, high] = std::minmax(start[d], end[d]);
-      inside = inside && track.position[i][d] > low - reach && track.position[i][d] < high + reach;
-    }
-    if (inside) {
-      near.push_back(i);
-    }
-  }
-  return near;
-}
-
 }  // namespace
 
 SolidifiedTrack read_solidified_track(const std::filesystem::path& path) {
@@ -97,6 +80,46 @@ SolidifiedTrack read_solidified_track(const std::filesystem::path& path) {
   return track;
 }
 
+TrackField::TrackField(const SolidifiedTrack& track, const Point& low, const Point& high)
+    : track_(track) {
+  const double reach = 3 * track.smoothing_length;
+  for (std::size_t i = 0; i < track.position.size(); ++i) {
+    bool inside = true;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const auto [least, most] = std::minmax(low[d], high[d]);
+      inside =
+          inside && track.position[i][d] > least - reach && track.position[i][d] < most + reach;
+    }
+    if (inside) {
+      near_.push_back(i);
+    }
+  }
+}
+
+double TrackField::at(const Point& point) const {
+  const double volume = std::pow(track_.spacing, 3);
+  // Of the sphere as large as a particle: a grain of one particle fills less than half of its
+  // kernel, and is metal all the same.
+  const double particle_radius = std::cbrt(3 / (4 * std::numbers::pi)) * track_.spacing;
+  double sum = 0, weight = 0;
+  bool inside = false;
+  const double reach = 3 * track_.smoothing_length;
+  for (const std::size_t j : near_) {
+    const Point& other = track_.position[j];
+    const double dx = point[0] - other[0], dy = point[1] - other[1], dz = point[2] - other[2];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    if (squared > reach * reach) {
+      continue;  // most of the box, for each of thousands of samples
+    }
+    const double r = std::sqrt(squared);
+    const double w = volume * kernel(r, track_.smoothing_length);
+    inside = inside || r <= particle_radius;
+    sum += w * track_.concentration[j];
+    weight += w;
+  }
+  return inside || weight >= 0.5 ? sum / weight : std::numeric_limits<double>::quiet_NaN();
+}
+
 SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, const Point& end,
                              double step) {
   const double length = distance(start, end);
@@ -106,12 +129,7 @@ SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, c
         "smaller, positive step.",
         1e6 * length, 1e6 * step));
   }
-  const double volume = std::pow(track.spacing, 3);
-  const double reach = 3 * track.smoothing_length;
-  // Of the sphere as large as a particle: a grain of one particle fills less than half of its
-  // kernel, and is metal all the same.
-  const double particle_radius = std::cbrt(3 / (4 * std::numbers::pi)) * track.spacing;
-  const auto near = near_line(track, start, end, reach);
+  const TrackField field(track, start, end);
   const auto intervals = static_cast<std::size_t>(std::lround(length / step));
   SimulatedProfile profile{start, end, {}, {}};
   bool found = false;
@@ -121,20 +139,10 @@ SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, c
     for (std::size_t d = 0; d < 3; ++d) {
       at[d] = start[d] + part * (end[d] - start[d]);
     }
-    double sum = 0, weight = 0;
-    bool inside = false;
-    for (const std::size_t j : near) {
-      const double r = distance(at, track.position[j]);
-      const double w = volume * kernel(r, track.smoothing_length);
-      inside = inside || r <= particle_radius;
-      sum += w * track.concentration[j];
-      weight += w;
-    }
-    const bool material = inside || weight >= 0.5;
-    found = found || material;
+    const double concentration = field.at(at);
+    found = found || !std::isnan(concentration);
     profile.position.push_back(part * length);
-    profile.concentration.push_back(material ? sum / weight
-                                             : std::numeric_limits<double>::quiet_NaN());
+    profile.concentration.push_back(concentration);
   }
   if (!found) {
     throw InputError(fmt::format(

@@ -28,6 +28,21 @@ struct SolidifiedTrack {
 ///         data set, fields of different length.
 SolidifiedTrack read_solidified_track(const std::filesystem::path& path);
 
+/// The concentration between the particles of a region: sum_j V C_j W / sum_j V W (Shepard) with
+/// the quintic spline of the run, over all material, melted or not.
+class TrackField {
+ public:
+  /// @param low,high corners of the box in which it will be asked, in any order
+  TrackField(const SolidifiedTrack& track, const Point& low, const Point& high);
+  /// NaN where there is no material: where sum_j V W < 0.5, which is the value on a flat surface,
+  /// and no particle's own sphere reaches.
+  double at(const Point& point) const;
+
+ private:
+  const SolidifiedTrack& track_;
+  std::vector<std::size_t> near_;  ///< the particles that reach into the box
+};
+
 /// Concentration along a straight line.
 struct SimulatedProfile {
   Point start{}, end{};               ///< m
@@ -35,8 +50,7 @@ struct SimulatedProfile {
   std::vector<double> concentration;  ///< NaN where there is no material
 };
 
-/// C(x) = sum_j V C_j W / sum_j V W (Shepard) with the quintic spline of the run, over all
-/// material, melted or not. Where sum_j V W < 0.5, which a flat surface has, there is no material.
+/// TrackField::at() along a line.
 /// @param step distance of the samples in m; it is rounded so that the line's end is one of them.
 /// @throws InputError if the line is shorter than a step, or has no material anywhere.
 SimulatedProfile sample_line(const SolidifiedTrack& track, const Point& start, const Point& end,
