@@ -139,7 +139,17 @@ std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& b
   const auto patch =
       make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
   if (!patch) return std::nullopt;
-  const Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
+  Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
+  const double chi = linearise(*patch, best, false).total();
+  if (chi > 4 * static_cast<double>(patch->weight.size())) {
+    // In noise the polynomial through ln S may begin far from where the signal's own fit ends.
+    Vector plain = first_guess(*patch, 0, 0.1);
+    for (int k = 0; k < terms; ++k)
+      if (k / (across_order + 1) + k % (across_order + 1) > 2) plain(k) = 0;
+    plain = minimise(*patch, plain, false, 60);
+    const double other = linearise(*patch, plain, false).total();
+    if (other < chi) best = plain;
+  }
   const auto place = outermost(*patch, best, edge, log_level);
   if (!place) return std::nullopt;
   const Linearised at = linearise(*patch, best, true);
