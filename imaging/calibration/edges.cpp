@@ -261,6 +261,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                        std::sqrt(2.0 * static_cast<double>(difference.total()) * band_rows);
   EdgeFit fit;
   int bands = 0, fitted = 0;
+  double blur_squares = 0;
   for (int first = 0; first + band_rows <= flattened.rows; first += band_rows, ++bands) {
     // A column with a missing pixel is missing from the whole band: a mean over fewer rows would
     // belong to another row than the band's centre.
@@ -275,6 +276,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
     fit.lines.insert(fit.lines.end(), lines.begin(), lines.end());
     fit.line_width += width;
     fit.blur += blur;
+    blur_squares += blur * blur;
     ++fitted;
   }
   if (3 * fitted < bands || fit.lines.size() < 6)
@@ -284,6 +286,8 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                     fitted, bands));
   fit.line_width /= fitted;
   fit.blur /= fitted;
+  const double scatter = std::max(0.0, blur_squares / fitted - fit.blur * fit.blur);
+  fit.u_blur = std::sqrt(scatter / std::max(1, fitted - 1));
   regress(fit);
   return fit;
 }

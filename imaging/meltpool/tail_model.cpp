@@ -118,6 +118,23 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
     if ((without.chi_squared[i] - at.chi_squared[i]) / model.misfit >= 25)
       model.lines_with_front += 1;
   }
+  const int line =
+      std::clamp(static_cast<int>(std::lround(place->row - static_cast<double>(patch->line))), 0,
+                 patch->lines - 1);
+  for (int k = 0; k < patch->columns; ++k) {
+    const auto i = static_cast<std::size_t>(line * patch->columns + k);
+    if (!(patch->weight[i] > 0) || !(patch->value[i] > 0)) continue;
+    const double row = patch->margin_rows + line * fine + fine / 2;
+    const double theta = theta_at(*patch, best, patch->x(k + patch->margin_columns),
+                                  patch->y(static_cast<int>(row)));
+    const double depth = std::clamp((best(theta_star) - theta) / best(interval), 0.0, 1.0);
+    model.profile.push_back(
+        {(static_cast<double>(patch->column) + k) / Stack::samples, std::log(patch->value[i]),
+         1 / (std::sqrt(patch->weight[i]) * patch->value[i]),
+         std::log(std::max(at.blurred.at<double>(static_cast<int>(row), k + patch->margin_columns),
+                           1e-12)),
+         theta + best(rise) * depth});
+  }
   std::vector<double> signals, rises, fronts;
   bootstrap(at, best, true, seed, [&](const Vector& p) {
     const auto drawn = outermost(*patch, p, edge, p(theta_star));

@@ -62,6 +62,7 @@ Recording open_own(const std::filesystem::path& path) {
   header.frame_rate = optional("frame_rate", 0);
   header.integration_time = optional("integration_time", 0);
   header.pixel_size = optional("pixel_size", 0);
+  header.point_spread = optional("optics/point_spread", 0);
   header.saturation = optional("saturation_count", header.saturation);
   if (header.quantity == SignalQuantity::counts) header.under_range = 0;
   header.synthetic = file->attribute("synthetic");
