@@ -261,7 +261,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                        std::sqrt(2.0 * static_cast<double>(difference.total()) * band_rows);
   EdgeFit fit;
   int bands = 0, fitted = 0;
-  double blur_squares = 0;
+  std::vector<double> blurs;
   for (int first = 0; first + band_rows <= flattened.rows; first += band_rows, ++bands) {
     // A column with a missing pixel is missing from the whole band: a mean over fewer rows would
     // belong to another row than the band's centre.
@@ -275,8 +275,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
     if (lines.empty()) continue;
     fit.lines.insert(fit.lines.end(), lines.begin(), lines.end());
     fit.line_width += width;
-    fit.blur += blur;
-    blur_squares += blur * blur;
+    blurs.push_back(blur);
     ++fitted;
   }
   if (3 * fitted < bands || fit.lines.size() < 6)
@@ -285,9 +284,13 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                     "image.",
                     fitted, bands));
   fit.line_width /= fitted;
-  fit.blur /= fitted;
-  const double scatter = std::max(0.0, blur_squares / fitted - fit.blur * fit.blur);
-  fit.u_blur = std::sqrt(scatter / std::max(1, fitted - 1));
+  // In noise a few bands find no blur or far too much: the middle one counts, and the scatter as a
+  // normal distribution's median scatters.
+  fit.blur = median(blurs);
+  std::vector<double> distances;
+  for (const double blur : blurs) distances.push_back(std::abs(blur - fit.blur));
+  constexpr double normal = 1.4826, of_median = 1.2533;
+  fit.u_blur = normal * of_median * median(distances) / std::sqrt(static_cast<double>(fitted));
   regress(fit);
   return fit;
 }
