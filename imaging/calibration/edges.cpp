@@ -275,6 +275,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
     if (lines.empty()) continue;
     fit.lines.insert(fit.lines.end(), lines.begin(), lines.end());
     fit.line_width += width;
+    fit.blur += blur;
     blurs.push_back(blur);
     ++fitted;
   }
@@ -284,13 +285,10 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                     "image.",
                     fitted, bands));
   fit.line_width /= fitted;
-  // In noise a few bands find no blur or far too much: the middle one counts, and the scatter as a
-  // normal distribution's median scatters.
-  fit.blur = median(blurs);
-  std::vector<double> distances;
-  for (const double blur : blurs) distances.push_back(std::abs(blur - fit.blur));
-  constexpr double normal = 1.4826, of_median = 1.2533;
-  fit.u_blur = normal * of_median * median(distances) / std::sqrt(static_cast<double>(fitted));
+  fit.blur /= fitted;
+  double squares = 0;
+  for (const double blur : blurs) squares += (blur - fit.blur) * (blur - fit.blur);
+  fit.u_blur = std::sqrt(squares / std::max(1, fitted - 1) / fitted);
   regress(fit);
   return fit;
 }

@@ -25,7 +25,7 @@ struct EdgeFit {
   /// Relative standard uncertainty of the period that follows from it.
   double inequality_uncertainty = 0;
   double line_width = 0;  ///< periods, mean distance of the two edges
-  double blur = 0;        ///< px, sigma of the edges, median over bands
+  double blur = 0;        ///< px, mean sigma of the edges
   double u_blur = 0;      ///< px, its standard uncertainty by the scatter between bands
 };
 

@@ -79,7 +79,7 @@ class OneRecording(unittest.TestCase):
         self.assertEqual(rows["scan speed"]["source"], "unknown")
         self.assertEqual(rows["point spread, sigma"]["source"], "calibration")
         self.assertAlmostEqual(rows["point spread, sigma"]["value"], 0.8, delta=0.02)
-        self.assertLess(rows["point spread, sigma"]["u"], 0.03)
+        self.assertLess(rows["point spread, sigma"]["u"], 0.06)  # by the scatter of single rows at SNR 20
         for words in ("given by you", "your calibration", "the recording&#39;s file", "nobody says it",
                       "liquidus of 316L"):
             self.assertIn(words, self.page)
