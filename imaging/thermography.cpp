@@ -16,6 +16,7 @@
 #include "base/provenance.hpp"
 #include "imaging/meltpool/pictures.hpp"
 #include "imaging/meltpool/report.hpp"
+#include "imaging/meltpool/report_parameters.hpp"
 #include "imaging/meltpool/settings.hpp"
 #include "imaging/recording/formats.hpp"
 
@@ -87,6 +88,9 @@ int main(int argc, char** argv) {
       ->required();
   program.app.add_option("--settings", settings_path,
                          "TOML file with the same keys as the options below");
+  bool film = false;
+  program.app.add_flag("--film", film,
+                       "write film.png as well, annotated frames one below the other");
   std::map<std::string, std::string> given;
   for (const auto& [name, about] : shared_options)
     program.app.add_option("--" + name, given[name], about);
@@ -110,15 +114,24 @@ int main(int argc, char** argv) {
     PixelSize pixel{header.pixel_size, header.pixel_size, 0, 0};
     if (!settings.calibration.empty()) pixel = read_pixel_size(settings.calibration);
 
-    const Measurement measurement = measure_recording(recording, settings.measurement(pixel));
+    const PointSpread spread = point_spread_of(settings, header);
+    const Measurement measurement =
+        measure_recording(recording, settings.measurement(pixel, spread.sigma, spread.u));
     const Analysis& analysis = measurement.analysis;
     std::map<std::string, std::string> files = {
         {"frames.csv", frames_table(recording, analysis)},
         {"annotated.png", annotated_picture(recording, analysis, pixel)},
         {"contact_sheet.png", contact_sheet(recording, analysis)}};
+    const std::string tail = tail_table(measurement, pixel);
+    if (!tail.empty()) files["tail.csv"] = tail;
+    FilmStrip strip;
+    if (film) strip = film_strip(recording, analysis);
+    if (film) files["film.png"] = strip.png;
     provenance.wall_time = provenance.elapsed();
-    files["summary.json"] =
-        summary(recording, measurement, pixel, settings, provenance).dump(2) + "\n";
+    nlohmann::json json = summary(recording, measurement, pixel, settings, provenance);
+    json["parameters"] = parameters_json(header, settings, pixel, spread);
+    if (film) json["film_frames"] = strip.frames;
+    files["summary.json"] = json.dump(2) + "\n";
     write_all(output, files);
     if (!program.quiet()) fmt::print("{}Written to {}.\n", spoken(recording, measurement), output);
     if (header.frames_lost > 0) return ExitStatus::truncated;

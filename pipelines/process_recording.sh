@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# From one recording to reports/recordings/<file name>/. What to do stands in the environment:
-# RECORDING, and optionally CALIBRATION, GRADUATION, GRADUATION_IS, LEVEL, OUTPUT.
+# From one recording, or a folder of several, to reports/recordings/<name>/ with a report as PDF and HTML. What to do
+# stands in the environment: RECORDING, and optionally CALIBRATION, GRADUATION, GRADUATION_IS, MATERIAL, LEVEL,
+# SETTINGS, SCAN_SPEED, OUTPUT. recording_report/campaign.py says which folders are one recording and which several.
 # With --check only refuses what cannot work, before anything is built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,31 +24,61 @@ if [ -n "$calibration" ]; then
       "'$calibration' is taken for the image of a scale: say also its graduation and what that is, e.g. GRADUATION=\"100 um\" GRADUATION_IS=period (or line-width)."
   fi
 fi
+[ -z "${SETTINGS:-}" ] || [ -f "$SETTINGS" ] || refuse "the settings '$SETTINGS' do not exist."
 [ "${1:-}" = --check ] && exit 0
 
+reference='' material=''
+if [ -n "${MATERIAL:-}" ]; then
+  said=$(pipelines/python.sh pipelines/recording_report/material.py "$MATERIAL")
+  reference=$(head -n 1 <<<"$said")
+  material=$(tail -n 1 <<<"$said")
+fi
+
+bin=${MELTPROOF_BIN:-build/release/bin}
 name=$(basename -- "$recording" | tr -s '[:space:]' '_')
 name=${name%_} # the newline that basename writes
 output=${OUTPUT:-reports/recordings/$name}
+if [ -d "$recording" ] && [ "$(pipelines/python.sh pipelines/recording_report/campaign.py --decide "$recording")" = campaign ]; then
+  if [[ -n $calibration && $calibration != *.json ]]; then # once for all tracks
+    pipelines/stage.sh 'calibration' "$bin/meltproof-calibrate" "$calibration" \
+      --output "$output/calibration.json" --graduation "$GRADUATION" --graduation-is "$GRADUATION_IS"
+    export CALIBRATION=$output/calibration.json
+  fi
+  exec pipelines/python.sh pipelines/recording_report/campaign.py "$recording" --output "$output"
+fi
+made=0
+[ -d "$output" ] || made=1
 mkdir -p -- "$output"
 
-options=()
+options=(--film)
 if [[ -n $calibration && $calibration != *.json ]]; then
-  pipelines/stage.sh 'calibration' build/release/bin/meltproof-calibrate "$calibration" \
+  pipelines/stage.sh 'calibration' "$bin/meltproof-calibrate" "$calibration" \
     --output "$output/calibration.json" --graduation "$GRADUATION" --graduation-is "$GRADUATION_IS"
   calibration=$output/calibration.json
 fi
 [ -n "$calibration" ] && options+=(--calibration "$calibration")
 [ -n "${LEVEL:-}" ] && options+=(--level "$LEVEL")
+[ -n "${SETTINGS:-}" ] && options+=(--settings "$SETTINGS")
+[ -n "${SCAN_SPEED:-}" ] && options+=(--scan-speed "$SCAN_SPEED")
+[ -n "$reference" ] && options+=(--reference-temperature "$reference")
 
 echo "== recording $recording"
 status=0
-build/release/bin/meltproof-thermography "$recording" --output "$output" "${options[@]}" || status=$?
+rm -f -- "$output/tail.csv" # of an earlier run; this one may have none
+"$bin/meltproof-thermography" "$recording" --output "$output" "${options[@]}" || status=$?
 
 case $status in
-  0) echo "The results are in $output/." ;;
-  3) echo "No melt pool was found in '$recording'; its frames are described in $output/." ;;
-  4) echo "'$recording' ends early; the results in $output/ stand for its whole frames only." ;;
-  *) rmdir -- "$output" 2>/dev/null || true
+  0 | 3 | 4)
+    pages=()
+    [ -n "$calibration" ] && pages+=(--calibration "$calibration")
+    [ -n "$material" ] && pages+=(--material "$material")
+    pipelines/stage.sh 'report' pipelines/python.sh pipelines/recording_report/recording_report.py "$output" "${pages[@]}" ;;
+esac
+case $status in
+  0) echo "The report is $output/report.pdf, and report.html for a browser; numbers for a spreadsheet are in $output/frames.csv." ;;
+  3) echo "No melt pool was found in '$recording'; $output/report.pdf describes its frames." ;;
+  4) echo "'$recording' ends early; $output/report.pdf stands for its whole frames only." ;;
+  *) [ $made = 1 ] && rm -f -- "$output/calibration.json" "$output/calibration.png" && rmdir -- "$output" 2>/dev/null || true
      echo "make process: '$recording' was not processed; the reason stands above." ;;
 esac
 exit $status

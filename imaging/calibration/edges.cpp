@@ -261,6 +261,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                        std::sqrt(2.0 * static_cast<double>(difference.total()) * band_rows);
   EdgeFit fit;
   int bands = 0, fitted = 0;
+  std::vector<double> blurs;
   for (int first = 0; first + band_rows <= flattened.rows; first += band_rows, ++bands) {
     // A column with a missing pixel is missing from the whole band: a mean over fewer rows would
     // belong to another row than the band's centre.
@@ -275,6 +276,7 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
     fit.lines.insert(fit.lines.end(), lines.begin(), lines.end());
     fit.line_width += width;
     fit.blur += blur;
+    blurs.push_back(blur);
     ++fitted;
   }
   if (3 * fitted < bands || fit.lines.size() < 6)
@@ -284,6 +286,9 @@ EdgeFit fit_edges(const cv::Mat& image, const Eigen::Vector2d& start) {
                     fitted, bands));
   fit.line_width /= fitted;
   fit.blur /= fitted;
+  double squares = 0;
+  for (const double blur : blurs) squares += (blur - fit.blur) * (blur - fit.blur);
+  fit.u_blur = std::sqrt(squares / std::max(1, fitted - 1) / fitted);
   regress(fit);
   return fit;
 }

@@ -26,6 +26,7 @@ struct EdgeFit {
   double inequality_uncertainty = 0;
   double line_width = 0;  ///< periods, mean distance of the two edges
   double blur = 0;        ///< px, mean sigma of the edges
+  double u_blur = 0;      ///< px, its standard uncertainty by the scatter between bands
 };
 
 /// Fits, in every band of rows, a quadratic background + height sum over lines j of

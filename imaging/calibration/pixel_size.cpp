@@ -246,6 +246,7 @@ nlohmann::json calibration_json(const CalibratedPixel& size, const std::vector<S
          {"excluded_pixels", stripes.excluded},
          {"line_width_periods", edges.line_width},
          {"edge_blur_px", edges.blur},
+         {"u_edge_blur_px", edges.u_blur},
          {"edge_residual_px", edges.residual},
          {"inequality_px", edges.inequality},
          {"line_positions", edges.lines.size()}});

@@ -41,18 +41,20 @@ namespace {
 TrackMean track_of(const json& summary, const std::string& name, const std::string& file) {
   const std::string key = name + "_um";
   if (!summary.value("melt_pool_found", false) || !summary.contains(key))
-    throw InputError(fmt::format("{}: there is no {} in it; give the summary.json of a recording "
-                                 "with a melt pool that was measured with --calibration.",
-                                 file, key));
+    throw InputError(
+        fmt::format("{}: there is no {} in it; give the summary.json of a recording "
+                    "with a melt pool that was measured with --calibration.",
+                    file, key));
   TrackMean t;
   try {
     const json& plain = summary.at(key);
     t = {plain.at("mean").get<double>(), plain.at("sd").get<double>(), plain.at("n").get<double>(),
          plain.at("n_effective").get<double>()};
-    if (summary.contains("budget")) t.value = summary.at("budget").at(key).at("value").get<double>();
+    if (summary.contains("budget"))
+      t.value = summary.at("budget").at(key).at("value").get<double>();
   } catch (const json::exception&) {
-    throw InputError(fmt::format("{}: {} is not what meltproof-thermography writes; make it anew.",
-                                 file, key));
+    throw InputError(
+        fmt::format("{}: {} is not what meltproof-thermography writes; make it anew.", file, key));
   }
   return t;
 }
@@ -67,9 +69,10 @@ json campaign(const std::vector<std::filesystem::path>& summaries) {
   for (const auto& path : summaries) {
     const json summary = json::parse(read_file(path), nullptr, false);
     if (!summary.is_object())
-      throw InputError(fmt::format("{} is no JSON object; give the summary.json of "
-                                   "meltproof-thermography.",
-                                   path.string()));
+      throw InputError(
+          fmt::format("{} is no JSON object; give the summary.json of "
+                      "meltproof-thermography.",
+                      path.string()));
     lengths.push_back(track_of(summary, "length", path.string()));
     depths.push_back(track_of(summary, "depth", path.string()));
     tracks.push_back({{"summary", path.string()},

@@ -23,7 +23,7 @@ struct CampaignStatistics {
   double mean = 0;            ///< of the tracks, each with the same weight
   double between_frames = 0;  ///< standard deviation within a track, pooled by frames
   double between_tracks = 0;  ///< standard deviation of the tracks' own means, scatter taken off
-  double u_mean = 0;          ///< standard deviation of the tracks' means over the root of their number
+  double u_mean = 0;  ///< standard deviation of the tracks' means over the root of their number
 };
 
 /// The variance of the tracks' means less the part that their scatter between frames explains,

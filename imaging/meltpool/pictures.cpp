@@ -252,4 +252,50 @@ std::string contact_sheet(const Recording& recording, const Analysis& a) {
   return encoded(canvas);
 }
 
+FilmStrip film_strip(const Recording& recording, const Analysis& a, std::size_t most) {
+  const auto& h = recording.header();
+  std::size_t first = 0, last = h.frames - 1;
+  if (a.found) {
+    while (first < last && !a.frames[first].found) ++first;
+    while (last > first && !a.frames[last].found) --last;
+    first -= std::min<std::size_t>(first, 2);
+    last = std::min(last + 2, h.frames - 1);
+  }
+  FilmStrip strip;
+  const std::size_t step = (last - first) / most + 1;
+  for (std::size_t i = first; i <= last; i += step) strip.frames.push_back(i);
+  double low = 1e300, high = -1e300;
+  for (const std::size_t i : strip.frames) {
+    low = std::min(low, a.frames[i].values.low);
+    high = std::max(high, a.frames[i].values.high);
+  }
+  const auto wide = static_cast<double>(std::max(h.width, h.height));
+  const double zoom = wide <= 480 ? std::max(1.0, std::floor(480 / wide)) : 480 / wide;
+  const int columns =
+      std::max(420, static_cast<int>(std::ceil(zoom * static_cast<double>(h.width))));
+  const int rows = static_cast<int>(std::ceil(zoom * static_cast<double>(h.height)));
+  constexpr int label = 24;
+  const int tile_height = rows + label;
+  cv::Mat canvas(tile_height * static_cast<int>(strip.frames.size()), columns, CV_8UC3, paper);
+  const double scale = a.unit == "m" ? 1e6 : 1;
+  Frame frame;
+  for (std::size_t k = 0; k < strip.frames.size(); ++k) {
+    recording.read(strip.frames[k], frame);
+    const FrameResult& f = a.frames[strip.frames[k]];
+    cv::Mat tile = coloured(frame.values, h.width, low, high, zoom);
+    if (const auto region = pool_in(recording, a, frame)) draw_edge(tile, *region, zoom, 1);
+    const int top = static_cast<int>(k) * tile_height;
+    tile.copyTo(canvas(cv::Rect(0, top, tile.cols, tile.rows)));
+    std::string text = fmt::format("frame {}", f.index);
+    if (h.frame_rate > 0) text += "  " + time_text(f.time);
+    if (f.found)
+      text += fmt::format("  length {:.4g} {}{}", f.length * scale, a.unit == "m" ? "um" : "px",
+                          f.complete ? "" : "  (not used)");
+    if (!h.synthetic.empty()) text += "  SYNTHETIC";
+    write(canvas, text, 4, top + rows + 16, 0.42);
+  }
+  strip.png = encoded(canvas);
+  return strip;
+}
+
 }  // namespace meltproof::imaging

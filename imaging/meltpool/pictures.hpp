@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "imaging/meltpool/analysis.hpp"
 
@@ -17,5 +18,14 @@ std::string annotated_picture(const Recording& recording, const Analysis& analys
 /// Up to 24 frames spread evenly over the recording, in the colours of one common scale.
 /// @return the bytes of a PNG.
 std::string contact_sheet(const Recording& recording, const Analysis& analysis);
+
+/// Frames for an animated picture, one below the other, all of one height: those from two before
+/// the first pool to two after the last one (all, where there is none), at most `most` of them at
+/// equal steps, with the pool's edge, the frame's number, time, length and status.
+struct FilmStrip {
+  std::string png;                  ///< bytes of a PNG
+  std::vector<std::size_t> frames;  ///< their numbers, from above
+};
+FilmStrip film_strip(const Recording& recording, const Analysis& analysis, std::size_t most = 60);
 
 }  // namespace meltproof::imaging

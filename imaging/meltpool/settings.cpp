@@ -73,26 +73,29 @@ InputTable reading_table(Settings& s) {
   return table;
 }
 
-InputTable budget_table(BudgetSettings& b) {
+InputTable budget_table(Settings& s) {
+  BudgetSettings& b = s.budget;
   InputTable table("budget",
                    "What is known of the inputs of the uncertainty budget; standard "
                    "uncertainties.");
   table
-      .quantity(b.point_spread,
-                {.name = "point_spread",
-                 .unit = "1",
-                 .about = "sigma of the optics' Gaussian point spread in pixels; the default is "
-                          "the virtual camera's, since the paper gives none: measure it "
-                          "(meltproof-calibrate reports the blur of the scale's edges)",
-                 .minimum = 0,
-                 .maximum = 10})
-      .quantity(b.u_point_spread,
-                {.name = "u_point_spread",
-                 .unit = "1",
-                 .about = "of it, in pixels; the default is an eighth of it, what the edges of a "
-                          "glass scale leave open",
-                 .minimum = 0,
-                 .maximum = 10})
+      .quantity(
+          s.point_spread,
+          {.name = "point_spread",
+           .unit = "1",
+           .about = "sigma of the optics' Gaussian point spread in pixels; without it the blur "
+                    "of the scale's edges in the calibration, then what the file says, then "
+                    "0.8 px, the virtual camera's, since the paper gives none",
+           .minimum = 0,
+           .maximum = 10})
+      .quantity(
+          s.u_point_spread,
+          {.name = "u_point_spread",
+           .unit = "1",
+           .about = "of it, in pixels; without it what the scatter of the scale's edges leaves "
+                    "open, at least 0.01 px, 0.02 px of what a file says, else 0.1 px",
+           .minimum = 0,
+           .maximum = 10})
       .quantity(b.u_integration_time, {.name = "u_integration_time",
                                        .unit = "1",
                                        .about = "of the integration time, relative",
@@ -147,7 +150,8 @@ ReadOptions Settings::read_options() const {
   return options;
 }
 
-MeasurementRequest Settings::measurement(const PixelSize& pixel) const {
+MeasurementRequest Settings::measurement(const PixelSize& pixel, double spread,
+                                         double u_spread) const {
   MeasurementRequest m;
   m.level = request();
   m.dark = dark;
@@ -157,6 +161,8 @@ MeasurementRequest Settings::measurement(const PixelSize& pixel) const {
   m.direction = parse_scan_direction(scan_direction);
   m.pixel = pixel;
   m.budget = budget;
+  m.budget.point_spread = spread;
+  m.budget.u_point_spread = u_spread;
   return m;
 }
 
@@ -244,7 +250,7 @@ Input declare(Settings& s) {
                             .about = "recording of a uniform warmer surface, for the pixels' "
                                      "gains"})
       .table(reference_table(s))
-      .table(budget_table(s.budget))
+      .table(budget_table(s))
       .table(reading_table(s))
       .file(s.calibration,
             {.name = "calibration",

@@ -22,6 +22,7 @@ struct Settings {
   std::string reference_signal = "auto";
   std::optional<double> dark;  ///< counts without light, for files that do not hold it
   BudgetSettings budget;
+  std::optional<double> point_spread, u_point_spread;  ///< px, in front of all other sources
   ReferenceRules rules;
   long long fewest_lines = 3;
   std::filesystem::path spectral_response, window_spectrum;
@@ -35,7 +36,7 @@ struct Settings {
     return {level, reference_temperature, emissivity, emissivity_liquid, transmission};
   }
   /// @throws InputError for a scan direction or search that there is not.
-  MeasurementRequest measurement(const PixelSize& pixel) const;
+  MeasurementRequest measurement(const PixelSize& pixel, double spread, double u_spread) const;
 };
 
 /// The declaration of the settings, bound to `settings`.
@@ -45,6 +46,15 @@ Input declare(Settings& settings);
 /// where they are given, u_pixel_size_x_um, u_pixel_size_y_um.
 /// @throws InputError if the file is no JSON or a size is missing or not positive.
 PixelSize read_pixel_size(const std::filesystem::path& calibration);
+
+/// The optics' point spread, sigma in pixels, and who says so.
+struct PointSpread {
+  double sigma = 0, u = 0;
+  std::string source;  ///< "given", "calibration", "file" or "default"
+};
+/// The first that is known: the settings, the blur of the edges in the calibration less that of a
+/// pixel's own area (variance 1/12), what the file says, the default of BudgetSettings.
+PointSpread point_spread_of(const Settings& settings, const RecordingHeader& header);
 
 /// What the settings make of a recording: a temperature scale, a frame rate.
 /// @throws InputError if they contradict what the file holds.

@@ -118,6 +118,23 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
     if ((without.chi_squared[i] - at.chi_squared[i]) / model.misfit >= 25)
       model.lines_with_front += 1;
   }
+  const int line =
+      std::clamp(static_cast<int>(std::lround(place->row - static_cast<double>(patch->line))), 0,
+                 patch->lines - 1);
+  for (int k = 0; k < patch->columns; ++k) {
+    const auto i = static_cast<std::size_t>(line * patch->columns + k);
+    if (!(patch->weight[i] > 0) || !(patch->value[i] > 0)) continue;
+    const double row = patch->margin_rows + line * fine + fine / 2;
+    const double theta = theta_at(*patch, best, patch->x(k + patch->margin_columns),
+                                  patch->y(static_cast<int>(row)));
+    const double depth = std::clamp((best(theta_star) - theta) / best(interval), 0.0, 1.0);
+    model.profile.push_back(
+        {(static_cast<double>(patch->column) + k) / Stack::samples, std::log(patch->value[i]),
+         1 / (std::sqrt(patch->weight[i]) * patch->value[i]),
+         std::log(std::max(at.blurred.at<double>(static_cast<int>(row), k + patch->margin_columns),
+                           1e-12)),
+         theta + best(rise) * depth});
+  }
   std::vector<double> signals, rises, fronts;
   bootstrap(at, best, true, seed, [&](const Vector& p) {
     const auto drawn = outermost(*patch, p, edge, p(theta_star));
@@ -139,7 +156,17 @@ std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& b
   const auto patch =
       make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
   if (!patch) return std::nullopt;
-  const Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
+  Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
+  const double chi = linearise(*patch, best, false).total();
+  if (chi > 4 * static_cast<double>(patch->weight.size())) {
+    // In noise the polynomial through ln S may begin far from where the signal's own fit ends.
+    Vector plain = first_guess(*patch, 0, 0.1);
+    for (int k = 0; k < terms; ++k)
+      if (k / (across_order + 1) + k % (across_order + 1) > 2) plain(k) = 0;
+    plain = minimise(*patch, plain, false, 60);
+    const double other = linearise(*patch, plain, false).total();
+    if (other < chi) best = plain;
+  }
   const auto place = outermost(*patch, best, edge, log_level);
   if (!place) return std::nullopt;
   const Linearised at = linearise(*patch, best, true);

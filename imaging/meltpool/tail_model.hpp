@@ -11,6 +11,14 @@
 
 namespace meltproof::imaging {
 
+/// One place along the line of the front: what the mean pool shows and what the model says.
+struct TailSample {
+  double position = 0;     ///< px along a line of the stack
+  double seen = 0, u = 0;  ///< ln(S - dark) of the mean pool, its standard uncertainty
+  double blurred = 0;      ///< ln(S - dark) of the model as the camera blurs it
+  double sharp = 0;        ///< the same without the blur
+};
+
 /// ln(S - dark) = F(theta(x, y)), where theta is smooth (a polynomial along and across the scan)
 /// and F is one up to a signal theta*, then adds `rise` over an interval `interval` of theta, and
 /// is one again:
@@ -32,6 +40,7 @@ struct TailModel {
   double misfit = 0;                    ///< chi-squared over degrees of freedom
   double explained = 0;              ///< chi-squared that the front explains, in units of `misfit`
   std::size_t lines = 0;             ///< lines of pixels that the front crosses within the fit
+  std::vector<TailSample> profile;   ///< along the line of pixels next to the outermost front
   std::size_t lines_with_front = 0;  ///< of them, those where it explains chi-squared of 25 or more
 };
 

@@ -8,6 +8,7 @@
 
 #include "base/artifact.hpp"
 #include "base/error.hpp"
+#include "imaging/recording/guarded.hpp"
 #include "imaging/recording/hdf5_array.hpp"
 
 namespace meltproof::imaging {
@@ -20,10 +21,22 @@ Recording open_own(const std::filesystem::path& path);
 
 bool is_hdf5(std::string_view first_bytes) { return first_bytes.starts_with("\x89HDF\r\n\x1a\n"); }
 
-Recording open_hdf5(const std::filesystem::path& path, const ReadOptions& options) {
+namespace {
+
+Recording open_either(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string kind = ArtifactReader(path).attribute("kind");
   if (kind.starts_with("meltproof") && options.dataset.empty()) return open_own(path);
   return open_hdf5_array(path, options, "fhw", false);
+}
+
+}  // namespace
+
+Recording open_hdf5(const std::filesystem::path& path, const ReadOptions& options) {
+  try_in_child(path, "HDF5", [&] {
+    const Recording recording = open_either(path, options);
+    if (recording.header().frames > 0) recording.frame(0);
+  });
+  return open_either(path, options);
 }
 
 namespace {
@@ -62,6 +75,7 @@ Recording open_own(const std::filesystem::path& path) {
   header.frame_rate = optional("frame_rate", 0);
   header.integration_time = optional("integration_time", 0);
   header.pixel_size = optional("pixel_size", 0);
+  header.point_spread = optional("optics/point_spread", 0);
   header.saturation = optional("saturation_count", header.saturation);
   if (header.quantity == SignalQuantity::counts) header.under_range = 0;
   header.synthetic = file->attribute("synthetic");

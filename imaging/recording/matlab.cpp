@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "imaging/recording/array_axes.hpp"
+#include "imaging/recording/guarded.hpp"
 #include "imaging/recording/hdf5_array.hpp"
 #include "imaging/recording/mat5_elements.hpp"
 #include "imaging/recording/signal_unit.hpp"
@@ -205,7 +206,12 @@ void read_portion(Source& s, std::size_t index, std::size_t pixels) {
 bool is_matlab_7(std::string_view first_bytes) { return first_bytes.starts_with("MATLAB 7.3"); }
 
 Recording open_matlab_7(const fs::path& path, const ReadOptions& options) {
-  return open_hdf5_array(path, options, "hwf", true);
+  const auto open = [&] { return open_hdf5_array(path, options, "hwf", true); };
+  try_in_child(path, "HDF5", [&] {
+    const Recording recording = open();
+    if (recording.header().frames > 0) recording.frame(0);
+  });
+  return open();
 }
 
 bool is_matlab_5(std::string_view first_bytes) { return first_bytes.starts_with("MATLAB 5.0"); }

@@ -46,6 +46,7 @@ struct RecordingHeader {
   double frame_rate = 0;        ///< Hz; 0 where the file does not say
   double integration_time = 0;  ///< s; 0 where the file does not say
   double pixel_size = 0;        ///< m on the object; 0 where the file does not say
+  double point_spread = 0;      ///< px, sigma of the optics' point spread; 0: the file does not say
   SignalQuantity quantity = SignalQuantity::counts;
   std::string unit = "count";  ///< "count", "K" or "W m-2 sr-1"
   /// A value from here on is saturated; one from here down is under range.

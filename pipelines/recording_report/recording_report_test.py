@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`make process` on synthetic recordings of meltproof-camera: the report says what was measured, of what kind the
+recording is and where every parameter comes from; a folder is one recording or a campaign by its content."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
+sys.path.insert(0, str(HERE))
+import campaign  # noqa: E402
+
+SCALE = "data/scales/synthetic_across_x.h5"
+
+
+def film(path, power):
+    settings = path.with_suffix(".settings.toml")
+    settings.write_text(f'[view]\nsurface_row = 19.6\n[rosenthal]\nview = "top"\nframes = 52\n'
+                        f'absorbed_power = "{power} W"\n')
+    done = subprocess.run([str(BIN / "meltproof-camera"), "--rosenthal", "--settings", str(settings), "--seed", "3",
+                           "--output", str(path)], capture_output=True, text=True, cwd=ROOT, check=False)
+    assert done.returncode == 0, done.stderr
+    settings.unlink()
+
+
+def process(**variables):
+    environment = {key: text for key, text in os.environ.items() if not key.startswith(("MAKE", "MFLAGS"))}
+    environment.update({"MELTPROOF_BIN": str(BIN), "SOURCE_DATE_EPOCH": "0", **variables})
+    return subprocess.run(["bash", "pipelines/process_recording.sh"], capture_output=True, text=True, cwd=ROOT,
+                          env=environment, check=False)
+
+
+class OneRecording(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.kept = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.kept.name)
+        film(cls.folder / "a pool.h5", 62)
+        cls.output = cls.folder / "out"
+        cls.done = process(RECORDING=str(cls.folder / "a pool.h5"), OUTPUT=str(cls.output), CALIBRATION=SCALE,
+                           GRADUATION="100 um", GRADUATION_IS="period", MATERIAL="316L")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.kept.cleanup()
+
+    def setUp(self):
+        self.assertEqual(self.done.returncode, 0, self.done.stdout + self.done.stderr)
+        self.page = (self.output / "report.html").read_text()
+        self.summary = json.loads((self.output / "summary.json").read_text())
+
+    def test_length_and_depth_with_their_intervals_are_in_the_first_lines(self):
+        answer = self.page[self.page.index('class="answer"'):]
+        answer = answer[:answer.index("</p>")]
+        for name in ("length", "depth"):
+            budget = self.summary["budget"][f"{name}_um"]
+            low, high = budget["interval_95"]
+            self.assertIn(f"{budget['value']:.4g} µm</strong>, 95 % interval {low:.4g} to {high:.4g} µm", answer)
+
+    def test_it_is_called_synthetic_on_top_and_at_every_picture(self):
+        self.assertLess(self.page.index("Synthetic recording, no measurement"), self.page.index('class="answer"'))
+        captions = self.page.split("<figcaption>")[1:]
+        self.assertGreaterEqual(sum("synthetic" in c.split("</figcaption>")[0].lower() for c in captions), 5)
+        self.assertIn("The picture of the scale is synthetic", self.page)
+
+    def test_every_parameter_says_where_it_comes_from(self):
+        rows = {row["name"]: row for row in self.summary["parameters"]}
+        self.assertEqual((rows["reference temperature"]["value"], rows["reference temperature"]["source"]),
+                         (1683, "given"))
+        self.assertEqual(rows["transmission of the windows"]["source"], "file")
+        self.assertEqual(rows["pixel size along x"]["source"], "calibration")
+        self.assertEqual(rows["scan speed"]["source"], "unknown")
+        self.assertEqual(rows["point spread, sigma"]["source"], "calibration")
+        self.assertAlmostEqual(rows["point spread, sigma"]["value"], 0.8, delta=0.02)
+        self.assertLess(rows["point spread, sigma"]["u"], 0.06)  # by the scatter of single rows at SNR 20
+        for words in ("given by you", "your calibration", "the recording&#39;s file", "nobody says it",
+                      "liquidus of 316L"):
+            self.assertIn(words, self.page)
+
+    def test_the_tail_is_drawn_with_the_reference_signal(self):
+        self.assertTrue(self.summary["reference_signal"]["used"])
+        with (self.output / "tail.csv").open() as file:
+            rows = [[float(cell) for cell in row] for row in list(csv.reader(file))[1:]]
+        near = min(rows, key=lambda row: abs(row[0]))
+        self.assertLess(abs(near[0]), 3)  # the front lies within the profile
+        misfit = sum(((row[1] - row[3]) / row[2]) ** 2 for row in rows) / len(rows)
+        self.assertLess(misfit, 4)  # the exported model is the one that was fitted
+        self.assertIn("S* is the signal of liquid metal", self.page)
+
+    def test_the_page_moves_and_the_pdf_is_one(self):
+        self.assertIn("The frames in turn", self.page)
+        self.assertEqual((self.output / "report.pdf").read_bytes()[:5], b"%PDF-")
+        from PIL import Image
+
+        with Image.open(self.output / "animation.png") as moving:
+            self.assertEqual(moving.n_frames, len(self.summary["film_frames"]))
+
+    def test_the_same_inputs_give_the_same_bytes(self):
+        before = {name: (self.output / name).read_bytes() for name in ("report.html", "report.pdf", "animation.png")}
+        again = subprocess.run(["pipelines/python.sh", "pipelines/recording_report/recording_report.py",
+                                str(self.output), "--calibration", str(self.output / "calibration.json"), "--material",
+                                "The reference temperature is the liquidus of 316L, 1683 K (316L.toml; source: Table "
+                                "A1)."], cwd=ROOT, env={**os.environ, "SOURCE_DATE_EPOCH": "0"}, check=False)
+        self.assertEqual(again.returncode, 0)
+        for name, content in before.items():
+            self.assertEqual((self.output / name).read_bytes(), content, name)
+
+
+class WithoutAPool(unittest.TestCase):
+    def test_the_report_says_why(self):
+        with tempfile.TemporaryDirectory() as folder:
+            output = Path(folder) / "out"
+            done = process(RECORDING=SCALE, OUTPUT=str(output))
+            self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+            page = (output / "report.html").read_text()
+            self.assertIn("<strong>No melt pool.</strong>", page)
+            self.assertNotIn("<h2>Uncertainty</h2>", page)
+
+    def test_an_unknown_material_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = process(RECORDING=SCALE, OUTPUT=str(Path(folder) / "out"), MATERIAL="unobtainium")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("neither a file nor a material", done.stderr)
+            self.assertFalse((Path(folder) / "out").exists())
+
+
+class Folders(unittest.TestCase):
+    def setUp(self):
+        self.kept = tempfile.TemporaryDirectory()
+        self.folder = Path(self.kept.name)
+
+    def tearDown(self):
+        self.kept.cleanup()
+
+    def test_pictures_of_one_frame_are_one_recording(self):
+        from PIL import Image
+
+        frames = [Image.new("I;16", (8, 8), i) for i in range(3)]
+        for i, frame in enumerate(frames):
+            frame.save(self.folder / f"{i}.tiff")
+        self.assertFalse(campaign.is_campaign(self.folder))
+        frames[0].save(self.folder / "3.tiff", save_all=True, append_images=frames[1:])
+        self.assertTrue(campaign.is_campaign(self.folder))
+
+    def test_folders_and_a_table_are_a_campaign(self):
+        (self.folder / "track").mkdir()
+        self.assertTrue(campaign.is_campaign(self.folder))
+        (self.folder / "track").rmdir()
+        self.assertFalse(campaign.is_campaign(self.folder))
+        (self.folder / "campaign.csv").write_text("file\n")
+        self.assertTrue(campaign.is_campaign(self.folder))
+
+    def test_a_wrong_table_is_refused_in_a_sentence(self):
+        (self.folder / "a.ptw").write_bytes(b"")
+        for text, said in (('[[track]]\nfile = "a.ptw"\npower = 175\n', "no key `power`"),
+                           ('[[track]]\nfile = "b.ptw"\n', "is not in"),
+                           ('[[track]]\nfile = "a.ptw"\nspeed_m_s = "fast"\n', "expected a number"),
+                           ('[[track]]\nfile = "a.ptw"\n[[track]]\nfile = "a.ptw"\n', "twice"),
+                           ('title = "x"\n', "expected tables [[track]]")):
+            (self.folder / "campaign.toml").write_text(text)
+            with self.assertRaisesRegex(campaign.Refused, said.replace("[", r"\[").replace("]", r"\]")):
+                campaign.tracks_of(self.folder)
+        (self.folder / "campaign.toml").unlink()
+        (self.folder / "campaign.csv").write_text("file,additive_wt_percent\na.ptw,5,1\n")
+        with self.assertRaisesRegex(campaign.Refused, "not as many cells"):
+            campaign.tracks_of(self.folder)
+        (self.folder / "campaign.csv").write_text('file,additive_wt_percent\na.ptw,"0,5"\n')
+        with self.assertRaisesRegex(campaign.Refused, "decimal point"):
+            campaign.tracks_of(self.folder)
+
+    def test_a_campaign_draws_length_against_content(self):
+        for name, power in (("a", 58), ("b", 60), ("c", 66)):
+            film(self.folder / f"{name}.h5", power)
+        (self.folder / "campaign.csv").write_text(
+            "file,additive_wt_percent,speed_m_s\na.h5,0,0.375\nb.h5,0,0.375\nc.h5,5,0.375\n")
+        output = self.folder / "out"
+        done = process(RECORDING=str(self.folder), OUTPUT=str(output))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("== track 3 of 3: c.h5", done.stdout)
+        with (output / "campaign.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        lengths = [float(row["length [um]"]) for row in rows]
+        for row, length in zip(rows, lengths):
+            track = json.loads((output / row["file"] / "summary.json").read_text())
+            self.assertAlmostEqual(track["budget"]["length_um"]["value"], length, delta=1e-3)
+            self.assertLess(abs(track["speed_relative_error"]), 0.01)
+        page = (output / "campaign.html").read_text()
+        self.assertIn(f"0 wt%: length <strong>{(lengths[0] + lengths[1]) / 2:.4g} µm", page)
+        self.assertIn(f"5 wt%: length <strong>{lengths[2]:.4g} µm", page)
+        self.assertGreater(lengths[2], lengths[1])
+        self.assertIn("all of the 3 recordings were computed by the virtual camera", page)
+        self.assertIn("Length against additive content", page)
+        self.assertTrue((output / "campaign.pdf").is_file())
+
+
+if __name__ == "__main__":
+    unittest.main()
