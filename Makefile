@@ -34,7 +34,7 @@ help:
 	@echo
 	@echo '  make validate                 simulate, compare, and write reports/validation.pdf and .html'
 	@echo '  make test                     build everything and run the tests; LONG=1: those that take minutes, too'
-	@echo '  make process RECORDING=FILE   a melt pool recording: frames, pool length, annotated pictures'
+	@echo '  make process RECORDING=FILE   a melt pool recording: report (PDF, HTML), pool length, pictures; a folder: a campaign'
 	@echo
 	@echo '  make verify                   only the cases with exact solutions'
 	@echo '  make figures                  only the figures'

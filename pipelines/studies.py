@@ -51,6 +51,8 @@ def small_result(run, folder, seconds):
     kept["acceptance"] = acceptance
     kept["limiters"] = result.get("limiters", {})
     kept["energy_relative_error"] = result["energy_relative_error"]
+    beam = [result[f"energy_{way}_J"] for way in ("absorbed", "reflected", "missed")]
+    kept["absorbed_share"] = beam[0] / sum(beam)
     kept["seconds"] = seconds
     made = result["provenance"]
     kept["threads"], kept["revision"], kept["inputs"] = made["threads"], result["revision"], made["inputs"]

@@ -4,6 +4,7 @@
 A run that is not there is named; no word here says more than the numbers that stand beside it.
 """
 
+import csv
 import sys
 import tomllib
 from pathlib import Path
@@ -123,12 +124,39 @@ def of_runs(question, erratum, base, names, studies, inputs=()):
     return {"question": question, "erratum": erratum, "sentences": sentences, "missing": missing}
 
 
+def absorbed_light(studies, root):
+    """Erratum 19: how much of the beam the simulation takes where reflected light is followed, against a measurement."""
+    runs = {run["name"]: run for run in studies["runs"]}
+    sentences, missing = [], []
+    if "absorbed_share" in runs.get("ray_traced", {}):
+        sentences.append(f"The paper's track on a bare plate then absorbs {100 * runs['ray_traced']['absorbed_share']:.0f} % of the "
+                         "beam, 40 % at each hit.")
+    path = Path(root) / "data/experiments/tracks316l/trapp2017.csv"
+    with existing(path).open(encoding="utf-8", newline="") as file:
+        measured = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    for row in measured:
+        run = runs.get(f"trapp_{row['power [W]']}W")
+        if run is None or "absorbed_share" not in run:
+            missing.append(f"trapp_{row['power [W]']}W")
+            continue
+        sentences.append(f"Bare 316L, {row['power [W]']} W, {row['speed [mm/s]']} mm/s, {row['spot [um]']} um spot: absorbed "
+                         f"{100 * run['absorbed_share']:.0f} % (measured {100 * float(row['absorptivity [1]']):.0f} %), width "
+                         f"{run['width_um']:.0f} um ({row['width [um]']}), depth {run['depth_um']:.0f} um ({row['depth [um]']})"
+                         + ("; stale." if run.get("stale") else "."))
+    if sentences:
+        sentences.append("The measured numbers were digitised from a figure by a third party (Trapp et al. 2017), so no "
+                         "uncertainty is known and no verdict is given.")
+    return {"question": "What does the metal absorb if reflected light is followed?", "erratum": 19, "sentences": sentences,
+            "missing": missing}
+
+
 def findings(rows, studies, work, root):
     """All findings in the order of the report; `studies` as read_studies() gives them."""
     return [
         rise_of_length(rows, work, root),
         of_runs("How far does the absorptivity change the result?", 19, "base",
                 ["absorptivity_low", "absorptivity_high", "absorptivity_06", "ray_traced"], studies, ["absorptivity"]),
+        absorbed_light(studies, root),
         of_runs("How far does the viscosity factor of 20?", 12, "base",
                 ["viscosity_low", "viscosity_high", "viscosity_5", "viscosity_1"], studies, ["viscosity_factor"]),
         of_runs("How far does the law of diffusivity?", 7, "powder_1wt_10", ["diffusivity_liquid"], studies),

@@ -44,6 +44,14 @@ class Findings(unittest.TestCase):
         self.assertEqual(found["missing"], ["absent"])
         self.assertEqual(findings.of_runs("?", 1, "nobody", ["torn"], studies)["sentences"], [])
 
+    def test_what_is_absorbed_stands_beside_what_was_measured(self):
+        run = {**self.run_of("trapp_65W", 200.0), "absorbed_share": 0.41}
+        found = findings.absorbed_light(self.studies(run), ROOT)
+        self.assertIn("65 W, 500 mm/s, 60 um spot: absorbed 41 % (measured 31 %), width 100 um (75), depth 50 um (28).",
+                      found["sentences"][0])
+        self.assertEqual(found["missing"], ["trapp_99W", "trapp_134W", "trapp_178W"])
+        self.assertEqual(findings.absorbed_light(self.studies(), ROOT)["sentences"], [])
+
     def test_the_rise_is_said_by_definition_with_its_verdict(self):
         def row(name, values, trend, verdict):
             return {"name": name, "S": values[1] - values[0], "u_val": 3.0, "coverage": 2, "verdict": verdict,
