@@ -64,6 +64,16 @@ TEST_F(Studies, UncertaintyIsThatOfSpacingAndOfTheChoicesThatDoNotClump) {
   EXPECT_NEAR(summary["series"][0]["quantities"]["length"]["order"].get<double>(), 2, 1e-6);
 }
 
+TEST_F(Studies, AResultOfOtherSettingsThanDeclaredDoesNotCount) {
+  put("base", 10, 100);
+  ASSERT_EQ(summarise(studies_, folder_)["runs"].size(), 1u);
+  std::ofstream(folder_ / "base.json") << json{
+      {"name", "base"}, {"settings", {"spacing=9 um"}}, {"spacing_um", 9}, {"clumped_fraction", 0}};
+  const auto summary = summarise(studies_, folder_);
+  EXPECT_TRUE(summary["runs"].empty());
+  EXPECT_EQ(summary["series"][0]["missing"], json::array({"coarse", "base", "fine"}));
+}
+
 TEST_F(Studies, WhatIsNotThereYetIsNamedAndDoesNotCount) {
   put("base", 10, 100);
   const auto summary = summarise(studies_, folder_);

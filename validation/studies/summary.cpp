@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array quantities = {"length", "width", "depth"};
 
-std::optional<json> read_result(const fs::path& path) {
+/// Nothing where there is no result, or only one of other settings than the run is declared with.
+std::optional<json> read_result(const fs::path& path, const std::vector<std::string>& settings) {
   if (!fs::is_regular_file(path)) {
     return std::nullopt;
   }
@@ -31,6 +33,12 @@ std::optional<json> read_result(const fs::path& path) {
   if (!result.is_object()) {
     throw InputError(fmt::format("{}: this is no JSON object: remove it and run `make studies`.",
                                  path.string()));
+  }
+  if (result.contains("settings") && result["settings"] != json(settings)) {
+    spdlog::warn(
+        "{} was made with {}, but is declared with {}: it does not count; run `make studies`.",
+        path.string(), result["settings"].dump(), json(settings).dump());
+    return std::nullopt;
   }
   return result;
 }
@@ -130,7 +138,7 @@ json summarise(const StudyDeclaration& studies, const fs::path& folder) {
   std::map<std::string, FinishedRun> by_name;
   json runs = json::array();
   for (const auto& run : studies.runs) {
-    if (auto result = read_result(folder / (run.name + ".json"))) {
+    if (auto result = read_result(folder / (run.name + ".json"), run.set)) {
       // A result keeps the title that it was run with; the declaration's is the one to be read.
       (*result)["title"] = run.title;
       by_name[run.name] = {&run, *result};
