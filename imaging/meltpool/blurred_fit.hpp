@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <Eigen/Dense>
-#include <opencv2/core.hpp>
 
 #include "imaging/meltpool/tail_model.hpp"
 
@@ -15,18 +14,25 @@ namespace meltproof::imaging::blurred_fit {
 
 inline constexpr int along_order = 4, across_order = 4;  // of the polynomial
 inline constexpr int terms = (along_order + 1) * (across_order + 1);
-inline constexpr int parameters = terms + 3;
-inline constexpr int theta_star = terms, rise = terms + 1, interval = terms + 2;
-inline constexpr int fine = 3;  // rows of the model a line: the front bends within a pixel
-inline constexpr double softness =
-    0.03;  // of theta, rounds the corners of F by a quarter of a pixel
-inline constexpr double leading_reach = 3;  // px
-inline constexpr double reach = 7;          // px along a line on either side of the start
-inline constexpr double narrowest = 0.02, widest = 1.2;  // interval of theta
+inline constexpr int parameters = terms + 4;
+inline constexpr int theta_star = terms, ratio = terms + 1, interval = terms + 2,
+                     variance = terms + 3;
+inline constexpr int fine = 3;           // rows of the model a line: the front bends within a pixel
+inline constexpr double edge_reach = 3;  // px, at the leading edge and at the sides
+inline constexpr double reach = 7;       // px along a line on either side of the start, in the tail
+/// Bounds of the interval where heat is released: the latent heat of steels, nickel, titanium and
+/// aluminium alloys amounts to 0.5 and more.
+inline constexpr double narrowest = 0.4, widest = 1.2;
 
-/// Coefficients of the polynomial (powers of y within powers of x), then theta*, rise, interval.
+/// Coefficients of the polynomial (powers of y within powers of x), then what TailLaw holds, then
+/// by how much the variance of the blur is larger than that of the patch, px^2.
 using Vector = Eigen::Matrix<double, parameters, 1>;
 using Matrix = Eigen::Matrix<double, parameters, parameters>;
+
+/// Which parameters besides the polynomial a fit may change.
+struct Freedom {
+  bool theta_star = false, ratio = false, interval = false, variance = false;
+};
 
 /// The part of the stack that is fitted, and the model's own finer grid around it.
 struct Patch {
@@ -34,10 +40,12 @@ struct Patch {
   int columns = 0, lines = 0;
   int margin_columns = 0, margin_rows = 0;
   double centre_column = 0, centre_line = 0;
-  bool even = false;                  // a side view: the surface is at centre_line
-  double scale = 6;                   // px, makes the polynomial's arguments of order one
-  double highest = 0;                 // ln S that the polynomial may reach in the margins
-  cv::Mat along, across;              // kernels
+  bool even = false;      // a side view: the surface is at centre_line
+  double scale = 6;       // px, makes the polynomial's arguments of order one
+  double highest = 0;     // ln S that the polynomial may reach in the margins
+  Blur blur;              // px
+  double u_variance = 0;  // px^2, of the blur
+  double steepness = steepness_of_steel;
   std::vector<double> value, weight;  // lines * columns; weight 0: not compared
   std::vector<double> smooth;         // the same values over half a pixel: where to begin
   std::vector<int> crossing;          // of every line, column where it falls to the start
@@ -45,14 +53,20 @@ struct Patch {
 
   int width() const { return columns + 2 * margin_columns; }
   int height() const { return lines * fine + 2 * margin_rows; }
-  double x(int model_column) const {
+  double x(double model_column) const {
     return (static_cast<double>(column) + model_column - margin_columns - centre_column) /
            Stack::samples / scale;
   }
   double row(int model_row) const {  // in lines of the stack
     return static_cast<double>(line) + (model_row - margin_rows - 0.5 * (fine - 1)) / fine;
   }
-  double y(int model_row) const { return (row(model_row) - centre_line) / scale; }
+  double y(double stack_line) const { return (stack_line - centre_line) / scale; }
+  /// The model's row in the middle of a line of the patch.
+  int middle(int patch_line) const { return margin_rows + patch_line * fine + fine / 2; }
+  /// Square of the standard deviations of the blur after its variance has changed.
+  Eigen::Vector2d variances(double change) const {
+    return {blur.along * blur.along + change, blur.across * blur.across + change};
+  }
 };
 
 /// Which end of the pool is fitted.
@@ -64,32 +78,46 @@ enum class End { tail, leading };
 std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blur,
                                 const PlateEdge& edge, double start, End end);
 
-/// The smooth field at the polynomial's arguments.
-double theta_at(const Patch& patch, const Vector& p, double x, double y);
+/// The part of the stack within three pixels of where it falls to `start` across the scan, at its
+/// widest. @param side +1 towards higher lines, -1 towards lower ones.
+std::optional<Patch> make_side_patch(const Stack& stack, double dark, const Blur& blur,
+                                     const PlateEdge& edge, double start, int side);
+
+/// The smooth field at the polynomial's arguments, and its change with x and with y.
+struct Field {
+  double theta = 0, by_x = 0, by_y = 0;
+};
+Field field_at(const Patch& patch, const Vector& p, double x, double y);
+TailLaw law_of(const Patch& patch, const Vector& p);
 
 /// Model, its derivatives, and what of the normal equations each line gives.
 struct Linearised {
   std::vector<Matrix> normal;  ///< a line; lower triangle
   std::vector<Vector> gradient;
   std::vector<double> chi_squared;
-  cv::Mat blurred;  ///< signal above dark on the fine grid
+  std::vector<double> blurred;  ///< lines * columns, signal above dark of the model
+  double prior = 0;             ///< chi-squared of the blur's variance
   double total() const;
 };
 Linearised linearise(const Patch& patch, const Vector& p, bool derivatives);
 
-/// Parameters within the bounds of the model; without a front its height is zero.
-Vector bounded(Vector p, bool with_front);
+/// ln(S - dark) of the blurred model at a place.
+double blurred_log_signal(const Patch& patch, const Vector& p, double x, double stack_line);
 
-/// One damped step of Gauss and Newton.
-Vector solve(Matrix normal, const Vector& gradient, double damping, bool with_front,
-             bool fixed_interval = false);
+/// Parameters within the bounds of the model.
+Vector bounded(const Patch& patch, Vector p, const Freedom& free);
+
+/// One damped step of Gauss and Newton. @param variance_prior where the prior of the blur's
+/// variance is centred.
+Vector solve(const Patch& patch, Matrix normal, Vector gradient, const Vector& p, double damping,
+             const Freedom& free, double variance_prior = 0);
 
 /// Least squares by Levenberg and Marquardt.
-Vector minimise(const Patch& patch, Vector p, bool with_front, int steps);
+Vector minimise(const Patch& patch, Vector p, const Freedom& free, int steps);
 
-/// Where the fit begins: a front of this height and interval where every line falls to the start,
-/// and the polynomial through what is left of ln S.
-Vector first_guess(const Patch& patch, double height, double width);
+/// Where the fit begins: a front of this law (its signal is set) where every line falls to the
+/// start, and the polynomial through what is left of ln S.
+Vector first_guess(const Patch& patch, const TailLaw& law);
 
 /// Sum over lines.
 template <class T>
@@ -106,6 +134,8 @@ struct Place {
 /// Outermost place where theta falls to `level`, over the patch's own rows of metal.
 std::optional<Place> outermost(const Patch& patch, const Vector& p, const PlateEdge& edge,
                                double level);
+/// The same across the scan, over the patch's own columns. @param side as of make_side_patch().
+std::optional<Place> widest_place(const Patch& patch, const Vector& p, double level, int side);
 /// Pixels along a line of the stack.
 double along_line(const Patch& patch, const Place& place);
 

@@ -73,20 +73,24 @@ std::string signature_name(Signature signature) {
 
 ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blur& blur,
                                       const PlateEdge& edge, double u_point_spread,
-                                      const ReferenceRules& rules, std::uint64_t seed) {
+                                      const ReferenceRules& rules, std::uint64_t seed,
+                                      double steepness) {
   ReferenceSignal result;
+  // The variance of the optics' part of the blur across the scan changes by 2 sigma a px of sigma.
+  const double point_spread = std::sqrt(std::max(blur.across * blur.across - 1.0 / 12, 0.0));
+  const TailPriors priors{2 * point_spread * u_point_spread, steepness};
   const double top = brightest(stack, dark);
   // A few steps from many signals, then as many as it takes from the most promising ones.
   std::vector<std::pair<double, double>> starts;  // minus what a front explains so far; where
   for (double start = top - 0.3; start > top - 2.8; start -= 0.2)
-    if (const auto m = fit_tail(stack, dark, blur, edge, start, seed, 8))
+    if (const auto m = fit_tail(stack, dark, blur, edge, start, seed, priors, 8))
       if (m->rise >= 0.5 * rules.flattening * m->interval && m->rise > 0.5 * rules.prominence)
         starts.emplace_back(-m->explained / m->misfit, start);
   std::sort(starts.begin(), starts.end());
   starts.resize(std::min<std::size_t>(starts.size(), 4));
   std::optional<TailModel> best;
   const auto try_from = [&](double start) {
-    const auto m = fit_tail(stack, dark, blur, edge, start, seed);
+    const auto m = fit_tail(stack, dark, blur, edge, start, seed, priors);
     if (!m) return;
     const bool good = broken_rule(*m, rules).empty();
     const bool was_good = best && broken_rule(*best, rules).empty();
@@ -101,22 +105,6 @@ ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blu
   }
   try_from(best->blurred);  // around the front itself
   const std::string broken = broken_rule(*best, rules);
-  if (u_point_spread > 0 && broken.empty()) {
-    // A wider blur than is known of makes a step look like a ramp that begins earlier.
-    const auto other = [&](double d) {
-      const Blur b{std::max(blur.along + d, 0.05), std::max(blur.across + d, 0.05)};
-      return fit_tail(stack, dark, b, edge, best->blurred, seed);
-    };
-    const auto wider = other(u_point_spread), narrower = other(-u_point_spread);
-    double front = 0, log_signal = 0;  // the larger of the two changes
-    for (const auto& m : {wider, narrower}) {
-      if (!m) continue;
-      front = std::max(front, std::abs(m->front - best->front));
-      log_signal = std::max(log_signal, std::abs(m->log_signal - best->log_signal));
-    }
-    best->u_front = std::hypot(best->u_front, front);
-    best->u_log_signal = std::hypot(best->u_log_signal, log_signal);
-  }
   result.model = *best;
   if (!broken.empty()) {
     result.reason = "nothing marks the solidification front: " + broken;

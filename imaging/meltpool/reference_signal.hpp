@@ -49,12 +49,15 @@ struct ReferenceSignal {
 /// 0.06 of the brightest one, keeps the fit that explains most, fits again around its front, and
 /// applies the rules. The feature counts as a step of the emissivity where the signal rises within
 /// it, otherwise as latent heat.
-/// The uncertainties of S* and of the front hold the bootstrap over lines and what the fit makes of
-/// a blur that is wider or narrower by `u_point_spread` (px).
+/// The point spread is fitted with the rest, `u_point_spread` (px) being what is known of it
+/// beforehand, so that the uncertainties of S* and of the front hold it.
+/// @param steepness d ln S / d ln T at the liquidus; tells how the signal of solid metal goes on
+/// behind released heat, and needs neither emissivity nor transmission.
 /// @param dark signal without light; @param seed of the bootstrap over lines.
 ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blur& blur,
                                       const PlateEdge& edge, double u_point_spread = 0,
-                                      const ReferenceRules& rules = {}, std::uint64_t seed = 1);
+                                      const ReferenceRules& rules = {}, std::uint64_t seed = 1,
+                                      double steepness = steepness_of_steel);
 
 /// Emissivities that S* implies at a reference temperature, S* = gain t_int tau (eps L + ...) +
 /// dark inverted for eps, and whether they are those of a metal.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
 #include "imaging/meltpool/blurred_fit.hpp"
@@ -32,14 +33,15 @@ double spread(std::vector<double> v) {
   return 0.5 * (part(0.8413) - part(0.1587));
 }
 
-/// Parameters after one step of Gauss and Newton with the lines drawn with replacement, 200 times.
+/// Parameters after one step of Gauss and Newton with the lines drawn with replacement, and with
+/// another draw of what is known of the blur, 200 times.
 template <class Use>
-void bootstrap(const Linearised& at, const Vector& best, bool with_front, std::uint64_t seed,
-               const Use& use) {
+void bootstrap(const Patch& patch, const Linearised& at, const Vector& best, Freedom free,
+               std::uint64_t seed, const Use& use) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  &gsl_rng_free);
   gsl_rng_set(random.get(), static_cast<unsigned long>(seed));
-  const bool at_bound = best(interval) < 1.5 * narrowest || best(interval) >= widest;
+  if (best(interval) <= narrowest || best(interval) >= widest) free.interval = false;
   const auto lines = static_cast<unsigned long>(at.normal.size());
   for (int draw = 0; draw < 200; ++draw) {
     Matrix normal = 1e-3 * sum(at.normal);  // a draw may lack the lines that fix a term
@@ -49,7 +51,8 @@ void bootstrap(const Linearised& at, const Vector& best, bool with_front, std::u
       normal += at.normal[i];
       gradient += at.gradient[i];
     }
-    use(bounded(best + solve(normal, gradient, 1e-6, with_front, at_bound), with_front));
+    const double prior = patch.u_variance * gsl_ran_gaussian_ziggurat(random.get(), 1);
+    use(bounded(patch, best + solve(patch, normal, gradient, best, 1e-6, free, prior), free));
   }
 }
 
@@ -72,46 +75,42 @@ Blur total_blur(double point_spread, double shift) {
 
 std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& blur,
                                   const PlateEdge& edge, double start, std::uint64_t seed,
-                                  int steps) {
-  const auto patch = make_patch(stack, dark, with_columns(blur), edge, start, End::tail);
+                                  const TailPriors& priors, int steps) {
+  auto patch = make_patch(stack, dark, with_columns(blur), edge, start, End::tail);
   if (!patch) return std::nullopt;
-  const Vector smooth = minimise(*patch, first_guess(*patch, 0, 0.1), false, 25);
-  const double chi_smooth = linearise(*patch, smooth, false).total();
-  // A step and a shoulder, both as a fit may start; the better one is kept.
+  patch->u_variance = priors.u_variance;
+  patch->steepness = priors.steepness;
+  const Vector smooth = minimise(*patch, first_guess(*patch, {}), {.variance = true}, 25);
+  const Linearised without = linearise(*patch, smooth, false);
+  // A step and a shoulder; the likelier one is kept.
+  constexpr Freedom abrupt{.theta_star = true, .ratio = true, .variance = true};
+  constexpr Freedom gradual{.theta_star = true, .ratio = true, .interval = true, .variance = true};
   Vector best = smooth;
+  Freedom free;
   double chi = 1e300;
-  for (const auto& [height, width] : {std::pair{0.4, 0.08}, {0.5, 0.55}, {0.8, 0.5}}) {
-    Vector p = first_guess(*patch, height, width);
-    p = minimise(*patch, p, true, steps);
+  for (const TailLaw& law : {TailLaw{.ratio = 0.4}, TailLaw{.ratio = 0.05, .interval = 0.55}}) {
+    const Freedom freedom = law.interval > 0 ? gradual : abrupt;
+    const Vector p = minimise(*patch, first_guess(*patch, law), freedom, steps);
     const double trial = linearise(*patch, p, false).total();
-    if (trial < chi) chi = trial, best = p;
+    if (trial < chi) chi = trial, best = p, free = freedom;
   }
   const auto place = outermost(*patch, best, edge, best(theta_star));
   if (!place) return std::nullopt;
   const Linearised at = linearise(*patch, best, true);
-  const Linearised without = linearise(*patch, smooth, false);
   std::size_t used = 0;
   for (const double w : patch->weight) used += w > 0 ? 1 : 0;
 
   TailModel model;
+  model.law = law_of(*patch, best);
   model.log_signal = best(theta_star);
-  model.rise = best(rise);
+  model.rise = model.law.rise();
   model.interval = best(interval);
+  model.variance = best(variance);
   model.front = along_line(*patch, *place);
-  const double y = (place->row - patch->centre_line) / patch->scale;
-  model.slope = (theta_at(*patch, best, place->x, y) -
-                 theta_at(*patch, best, place->x + 0.1 / patch->scale, y)) /
-                0.1;
-  const int c =
-      static_cast<int>(std::lround(place->x * patch->scale * Stack::samples + patch->centre_column -
-                                   static_cast<double>(patch->column))) +
-      patch->margin_columns;
-  const int r = static_cast<int>(std::lround(
-                    (place->row - static_cast<double>(patch->line)) * fine + 0.5 * (fine - 1))) +
-                patch->margin_rows;
-  model.blurred = std::log(std::max(at.blurred.at<double>(r, c), 1e-12));
+  model.slope = -field_at(*patch, best, place->x, patch->y(place->row)).by_x / patch->scale;
+  model.blurred = blurred_log_signal(*patch, best, place->x, place->row);
   model.misfit = std::max(1.0, chi / static_cast<double>(used - parameters));
-  model.explained = (chi_smooth - chi) / model.misfit;
+  model.explained = (without.total() - chi) / model.misfit;
   for (int l = 0; l < patch->lines; ++l) {
     const auto i = static_cast<std::size_t>(l);
     model.lines += 1;
@@ -124,66 +123,105 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
   for (int k = 0; k < patch->columns; ++k) {
     const auto i = static_cast<std::size_t>(line * patch->columns + k);
     if (!(patch->weight[i] > 0) || !(patch->value[i] > 0)) continue;
-    const double row = patch->margin_rows + line * fine + fine / 2;
-    const double theta = theta_at(*patch, best, patch->x(k + patch->margin_columns),
-                                  patch->y(static_cast<int>(row)));
-    const double depth = std::clamp((best(theta_star) - theta) / best(interval), 0.0, 1.0);
+    const double theta = field_at(*patch, best, patch->x(k + patch->margin_columns),
+                                  patch->y(static_cast<double>(patch->line) + line))
+                             .theta;
     model.profile.push_back(
         {(static_cast<double>(patch->column) + k) / Stack::samples, std::log(patch->value[i]),
          1 / (std::sqrt(patch->weight[i]) * patch->value[i]),
-         std::log(std::max(at.blurred.at<double>(static_cast<int>(row), k + patch->margin_columns),
-                           1e-12)),
-         theta + best(rise) * depth});
+         std::log(std::max(at.blurred[i], 1e-12)), tail_law(model.law, theta, 0).log_signal});
   }
-  std::vector<double> signals, rises, fronts;
-  bootstrap(at, best, true, seed, [&](const Vector& p) {
+  std::vector<double> signals, rises, fronts, variances;
+  bootstrap(*patch, at, best, free, seed, [&](const Vector& p) {
     const auto drawn = outermost(*patch, p, edge, p(theta_star));
     if (!drawn) return;
+    model.draws.push_back({along_line(*patch, *drawn), p(theta_star), p(variance)});
     signals.push_back(p(theta_star));
-    rises.push_back(p(rise));
-    fronts.push_back(along_line(*patch, *drawn));
+    rises.push_back(law_of(*patch, p).rise());
+    fronts.push_back(model.draws.back().front);
+    variances.push_back(p(variance));
   });
   model.u_log_signal = spread(signals);
   model.u_rise = spread(rises);
   model.u_front = spread(fronts);
+  model.u_variance = spread(variances);
   return model;
 }
 
-std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& blur,
-                                  const PlateEdge& edge, double log_level, bool leading,
-                                  std::uint64_t seed) {
-  const End end = leading ? End::leading : End::tail;
-  const auto patch =
-      make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
-  if (!patch) return std::nullopt;
-  Vector best = minimise(*patch, first_guess(*patch, 0, 0.1), false, 60);
-  const double chi = linearise(*patch, best, false).total();
-  if (chi > 4 * static_cast<double>(patch->weight.size())) {
+namespace {
+
+/// The field of an end of the pool; the law is known.
+Vector fit_field(const Patch& patch, double log_level, const TailLaw* law) {
+  const auto with_law = [&](Vector p) {
+    p(theta_star) = log_level;
+    p(ratio) = law != nullptr ? law->ratio : 0;
+    p(interval) = law != nullptr ? law->interval : 0;
+    return p;
+  };
+  const Vector guess = with_law(first_guess(patch, {}));
+  Vector best = minimise(patch, guess, {}, 60);
+  const double chi = linearise(patch, best, false).total();
+  if (chi > 4 * static_cast<double>(patch.weight.size())) {
     // In noise the polynomial through ln S may begin far from where the signal's own fit ends.
-    Vector plain = first_guess(*patch, 0, 0.1);
+    Vector plain = guess;
     for (int k = 0; k < terms; ++k)
       if (k / (across_order + 1) + k % (across_order + 1) > 2) plain(k) = 0;
-    plain = minimise(*patch, plain, false, 60);
-    const double other = linearise(*patch, plain, false).total();
-    if (other < chi) best = plain;
+    plain = minimise(patch, plain, {}, 60);
+    if (linearise(patch, plain, false).total() < chi) best = plain;
   }
-  const auto place = outermost(*patch, best, edge, log_level);
-  if (!place) return std::nullopt;
-  const Linearised at = linearise(*patch, best, true);
+  return best;
+}
+
+/// Position, uncertainty and misfit of a fitted end. @param place of p: a number, or nothing.
+template <class Where>
+std::optional<SharpEdge> sharp_edge(const Patch& patch, const Vector& best, std::uint64_t seed,
+                                    const Where& place) {
+  const std::optional<double> position = place(best);
+  if (!position) return std::nullopt;
+  const Linearised at = linearise(patch, best, true);
   const auto used =
-      std::count_if(patch->weight.begin(), patch->weight.end(), [](double w) { return w > 0; });
+      std::count_if(patch.weight.begin(), patch.weight.end(), [](double w) { return w > 0; });
   std::vector<double> places;
-  bootstrap(at, best, false, seed, [&](const Vector& p) {
-    if (const auto drawn = outermost(*patch, p, edge, log_level))
-      places.push_back(along_line(*patch, *drawn));
+  bootstrap(patch, at, best, {}, seed, [&](const Vector& p) {
+    if (const std::optional<double> drawn = place(p)) places.push_back(*drawn);
   });
-  SharpEdge sharp;
-  sharp.position = along_line(*patch, *place);
-  if (leading)
-    sharp.position = static_cast<double>(stack.columns - 1) / Stack::samples - sharp.position;
-  sharp.u = spread(places);
-  sharp.misfit = at.total() / std::max(1.0, static_cast<double>(used - terms));
+  return SharpEdge{*position, spread(places),
+                   at.total() / std::max(1.0, static_cast<double>(used - terms))};
+}
+
+}  // namespace
+
+std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double log_level, bool leading,
+                                  std::uint64_t seed, const TailLaw* law) {
+  const End end = leading ? End::leading : End::tail;
+  auto patch =
+      make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
+  if (!patch) return std::nullopt;
+  if (law != nullptr) patch->steepness = law->steepness;
+  const Vector best = fit_field(*patch, log_level, law);
+  auto sharp = sharp_edge(*patch, best, seed, [&](const Vector& p) -> std::optional<double> {
+    const auto place = outermost(*patch, p, edge, log_level);
+    if (!place) return std::nullopt;
+    return along_line(*patch, *place);
+  });
+  if (sharp && leading)
+    sharp->position = static_cast<double>(stack.columns - 1) / Stack::samples - sharp->position;
   return sharp;
+}
+
+std::optional<SharpEdge> fit_side(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double log_level, int side,
+                                  std::uint64_t seed, const TailLaw* law) {
+  auto patch = make_side_patch(stack, dark, with_columns(blur), edge, log_level, side);
+  if (!patch) return std::nullopt;
+  if (law != nullptr) patch->steepness = law->steepness;
+  const Vector best = fit_field(*patch, log_level, law);
+  return sharp_edge(*patch, best, seed, [&](const Vector& p) -> std::optional<double> {
+    const auto place = widest_place(*patch, p, log_level, side);
+    if (!place) return std::nullopt;
+    return place->row;
+  });
 }
 
 }  // namespace meltproof::imaging

@@ -8,6 +8,7 @@
 
 #include "imaging/meltpool/blur.hpp"
 #include "imaging/meltpool/stack.hpp"
+#include "imaging/meltpool/tail_law.hpp"
 
 namespace meltproof::imaging {
 
@@ -19,22 +20,34 @@ struct TailSample {
   double sharp = 0;        ///< the same without the blur
 };
 
-/// ln(S - dark) = F(theta(x, y)), where theta is smooth (a polynomial along and across the scan)
-/// and F is one up to a signal theta*, then adds `rise` over an interval `interval` of theta, and
-/// is one again:
-///   F(theta) = theta + rise min(max((theta* - theta) / interval, 0), 1).
-/// Released heat that holds the temperature has rise < interval, so that the signal falls less for
-/// a while (theta is then the scaled enthalpy); an emissivity that steps from that of liquid to
-/// that of solid metal has rise = ln(solid / liquid) > interval, so that the signal rises. The
-/// front is the line theta(x, y) = theta*. The model's signal is blurred before it is compared with
-/// the stack, so that front and signal are those without blur.
+/// What is known before a fit.
+struct TailPriors {
+  double u_variance = 0;                  ///< px^2, standard uncertainty of the blur's variance
+  double steepness = steepness_of_steel;  ///< d ln S / d ln T at the liquidus
+};
+
+/// One draw of the bootstrap over lines.
+struct TailDraw {
+  double front = 0, log_signal = 0, variance = 0;
+};
+
+/// theta(x, y) is smooth (a polynomial along and across the scan), TailLaw makes of it the signal,
+/// and that is blurred before it is compared with the stack, so that front and signal are those
+/// without blur. The front is the line theta(x, y) = theta*.
+///
+/// Freezing metal either releases heat that a camera can see, over an interval of 0.4 or more, or
+/// its signal steps abruptly: both are fitted, and the likelier one is kept. An interval between
+/// them would fit a point spread that is not quite the assumed one, with a front half an interval
+/// too far in. The blur's variance is fitted with the rest, within what is known of it.
 struct TailModel {
   double log_signal = 0;                ///< theta*
-  double rise = 0;                      ///< of ln S
-  double interval = 0;                  ///< of theta
+  double rise = 0;                      ///< TailLaw::rise()
+  double interval = 0;                  ///< of theta; 0: abrupt
+  TailLaw law;                          ///< the fitted one
   double u_log_signal = 0, u_rise = 0;  ///< standard uncertainties, by bootstrap over lines
   double front = 0;                     ///< px along a line, outermost place of the front
   double u_front = 0;                   ///< by bootstrap over lines
+  double variance = 0, u_variance = 0;  ///< px^2, what the fit adds to the blur's variance
   double blurred = 0;                   ///< ln(S - dark) that the blurred model has at that place
   double slope = 0;                     ///< of theta a pixel at that place, outwards: negative
   double misfit = 0;                    ///< chi-squared over degrees of freedom
@@ -42,6 +55,7 @@ struct TailModel {
   std::size_t lines = 0;             ///< lines of pixels that the front crosses within the fit
   std::vector<TailSample> profile;   ///< along the line of pixels next to the outermost front
   std::size_t lines_with_front = 0;  ///< of them, those where it explains chi-squared of 25 or more
+  std::vector<TailDraw> draws;       ///< of the bootstrap, with what is known of the blur
 };
 
 /// Where metal begins across the scan: above `row` (px, line number and fraction) there is none.
@@ -56,20 +70,28 @@ struct PlateEdge {
 /// most.
 std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& blur,
                                   const PlateEdge& edge, double start, std::uint64_t seed,
-                                  int steps = 60);
+                                  const TailPriors& priors = {}, int steps = 60);
 
 /// An end of the mean pool without the blur.
 struct SharpEdge {
-  double position = 0;  ///< px along a line, outermost place
+  double position = 0;  ///< px along a line, outermost place; of a side the line and its fraction
   double u = 0;         ///< px, standard uncertainty by bootstrap over lines
   double misfit = 0;    ///< chi-squared over degrees of freedom
 };
 
 /// Where the mean pool ends at a signal, `log_level` = ln(S - dark), without the blur: the same
-/// model without a front, fitted to the tail or to the leading edge. @return nothing where there
-/// are too few samples or the field does not fall to the level within them.
+/// model without a front, fitted to the tail or to the leading edge. @param law the law of the tail
+/// where it is known: metal melts at the leading edge as it freezes in the tail, and the level is
+/// then that of liquid metal at its front. @return nothing where there are too few samples or the
+/// field does not fall to the level within them.
 std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& blur,
                                   const PlateEdge& edge, double log_level, bool leading,
-                                  std::uint64_t seed);
+                                  std::uint64_t seed, const TailLaw* law = nullptr);
+
+/// The same across the scan, where the pool is widest. @param side +1 towards higher lines, -1
+/// towards lower ones.
+std::optional<SharpEdge> fit_side(const Stack& stack, double dark, const Blur& blur,
+                                  const PlateEdge& edge, double log_level, int side,
+                                  std::uint64_t seed, const TailLaw* law = nullptr);
 
 }  // namespace meltproof::imaging

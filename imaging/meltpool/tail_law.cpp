@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/tail_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace meltproof::imaging {
+namespace {
+
+/// clamp(z / width, 0, 1), its integral from -infinity, and that integral's change with `width`.
+struct Ramp {
+  double value, integral, by_width;
+};
+Ramp ramp(double z, double width) {
+  if (z <= 0) return {0, 0, 0};
+  if (z < width) return {z / width, 0.5 * z * z / width, -0.5 * z * z / (width * width)};
+  return {1, z - 0.5 * width, -0.5};
+}
+
+}  // namespace
+
+TailLawValue tail_law(const TailLaw& law, double theta, double cell) {
+  const double b = law.steepness;
+  const double below = (theta - law.log_signal) / b;
+  if (below > 0.5 || (law.ratio == 0 && law.interval == 0)) return {.log_signal = theta};
+  const double liquid = 1 / (1 - below);  // tau
+  const double q = 1 - liquid;
+  const double cell_q = std::max(cell / b * liquid * liquid, 1e-9);
+  if (q <= -0.5 * cell_q) return {.log_signal = theta};
+  const double width = law.interval / b;
+  const Ramp far = ramp(q + 0.5 * cell_q, width), near = ramp(q - 0.5 * cell_q, width);
+  const double f = (far.integral - near.integral) / cell_q;
+  const double f_q = (far.value - near.value) / cell_q;
+  const double f_width = (far.by_width - near.by_width) / cell_q;
+  const double latent = (1 - TailLaw::sensible) * width;
+  const double tau = liquid + latent * f;
+  const double mixed = 1 + f * std::expm1(law.ratio);
+  const double by_f = std::expm1(law.ratio) / mixed;
+  TailLawValue value;
+  value.log_signal = law.log_signal + b * (1 - 1 / tau) + std::log(mixed);
+  const double by_q = b / (tau * tau) * (latent * f_q - 1) + by_f * f_q;
+  value.by_theta = -by_q * liquid * liquid / b;
+  value.by_theta_star = 1 - value.by_theta;
+  value.by_ratio = f * std::exp(law.ratio) / mixed;
+  value.by_interval =
+      (b / (tau * tau) * ((1 - TailLaw::sensible) * f + latent * f_width) + by_f * f_width) / b;
+  return value;
+}
+
+}  // namespace meltproof::imaging

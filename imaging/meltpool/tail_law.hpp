@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What solidification does to the signal: ln(S - dark) of metal as a function of a smooth field.
+#pragma once
+
+namespace meltproof::imaging {
+
+/// Relative change of the radiance for a relative change of the temperature, d ln L / d ln T, of
+/// steel at its liquidus between 3 and 5 um; used where a recording says nothing of its band.
+inline constexpr double steepness_of_steel = 2.5;
+
+/// Freezing metal as a camera sees it. theta is ln(S - dark) that liquid metal of the same enthalpy
+/// would have, continued below the liquidus. Wien's form of Planck's law makes of it a temperature
+/// in units of the liquidus, tau = 1 / (1 - (theta - theta*) / B), which falls as evenly as the
+/// enthalpy. Below tau = 1 the metal freezes over a part w / B of that fall: the solid fraction f
+/// rises from 0 to 1, released heat gives back L f with L = (1 - m) w / B, and the emissivity goes
+/// from that of liquid to that of solid metal in proportion to f:
+///   ln(S - dark) = theta* + B (1 - 1 / (tau + L f)) + ln(1 + f (exp(e) - 1)).
+/// w = 0 is an abrupt front, w = e = 0 none.
+struct TailLaw {
+  double log_signal = 0;  ///< theta*, ln(S - dark) of liquid metal at the front
+  double ratio = 0;       ///< e, ln of the emissivity of solid over that of liquid metal
+  double interval = 0;    ///< w, of theta
+  double steepness = steepness_of_steel;  ///< B, d ln S / d ln T at the liquidus
+
+  /// m, the part of the enthalpy between liquidus and solidus that cools the metal: 50 K of 316L
+  /// over these and the 370 K of its latent heat (L / c; Mills 2002, Recommended values of
+  /// thermophysical properties for selected commercial alloys). A recording does not tell it apart
+  /// from a change of the emissivity.
+  static constexpr double sensible = 0.12;
+
+  /// Height of the feature in ln S: by how much the signal falls less than that of liquid metal.
+  double rise() const { return ratio + (1 - sensible) * interval; }
+};
+
+/// ln(S - dark) and its derivatives.
+struct TailLawValue {
+  double log_signal = 0, by_theta = 1, by_theta_star = 0, by_ratio = 0, by_interval = 0;
+};
+
+/// The law at a point of a grid, f being its mean over the point's cell, so that an abrupt front
+/// moves smoothly between points. @param cell range of theta across a cell.
+TailLawValue tail_law(const TailLaw& law, double theta, double cell);
+
+}  // namespace meltproof::imaging
