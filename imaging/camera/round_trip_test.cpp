@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Synthetic passages of known truth through the whole measurement: the reference signal found in
 // the recording, spatter and plume, invariance, motion blur.
+#include "imaging/camera/round_trip.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "imaging/camera/round_trip.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -78,23 +78,44 @@ TEST(ReferenceSignal, IsFoundAtTheShoulderOfLatentHeat) {
   EXPECT_EQ(m.reference.signature, Signature::latent_heat);
   EXPECT_NEAR(m.emissivity->liquid, 0.3, 0.01);
   expect_length(m, film, 0.02);
+  // An extrapolation over added blur is 0.3 to 0.5 px off beside a shoulder.
+  const double pixel = s.camera.pixel_size;
+  EXPECT_NEAR(m.budget->depth.value, film.depth, 0.2 * pixel);
+  EXPECT_LT(m.budget->depth.u, 0.2 * pixel);
+}
+
+// The fit tells the point spread from the front: one that the budget has 0.1 px wrong moves the
+// front of a step by little, where that is as uncertain as a calibration leaves it (2.5 times
+// that).
+TEST(ReferenceSignal, FitsThePointSpreadWithTheFront) {
+  for (const double off : {-0.1, 0.1}) {
+    auto s = with_emissivity_step(scene("top", 100, 3), 100);
+    s.camera.point_spread += off;
+    const FilmedPassage film = film_passage(s);
+    MeasurementRequest r = request(s);
+    r.budget.point_spread = s.camera.point_spread - off;
+    r.budget.u_point_spread = 0.04;
+    const Measurement m = measure_recording(recording_of(film, s), r);
+    ASSERT_TRUE(m.reference_used) << m.reference.reason;
+    EXPECT_EQ(m.reference.model.interval, 0) << "an abrupt front";
+    EXPECT_GT(m.reference.model.variance * off, 0);
+    expect_length(m, film, 0.02);
+  }
 }
 
 // Rosenthal's pool with one emissivity: nothing marks the boundary, and nothing may be found.
 TEST(ReferenceSignal, IsNotFoundWhereThereIsNone) {
   for (const char* view : {"top", "side"})
-    for (const double signal_to_noise : {20.0, 100.0})
-      {
-        const auto s = scene(view, signal_to_noise, 1);
-        MeasurementRequest r = request(s);
-        r.search = ReferenceSearch::required;
-        const Measurement m = measure_recording(recording_of(film_passage(s), s), r);
-        EXPECT_FALSE(m.reference_used) << view << signal_to_noise;
-        EXPECT_FALSE(m.analysis.found);
-        EXPECT_NE(m.analysis.reason.find("nothing marks the solidification front"),
-                  std::string::npos)
-            << m.analysis.reason;
-      }
+    for (const double signal_to_noise : {20.0, 100.0}) {
+      const auto s = scene(view, signal_to_noise, 1);
+      MeasurementRequest r = request(s);
+      r.search = ReferenceSearch::required;
+      const Measurement m = measure_recording(recording_of(film_passage(s), s), r);
+      EXPECT_FALSE(m.reference_used) << view << signal_to_noise;
+      EXPECT_FALSE(m.analysis.found);
+      EXPECT_NE(m.analysis.reason.find("nothing marks the solidification front"), std::string::npos)
+          << m.analysis.reason;
+    }
 }
 
 TEST(ReferenceSignal, IsRefusedWhereItMeansAnEmissivityThatNoMetalHas) {
@@ -125,7 +146,8 @@ TEST(Invariance, NoVertexMovesWhenTheSceneIsDimmed) {
     ASSERT_TRUE(b.reference_used) << b.reference.reason;
     double largest = 0;
     for (std::size_t i = 10; i < 40; i += 5) {
-      const auto p = pool_in(full, a.analysis, full.frame(i)), q = pool_in(recording, b.analysis, recording.frame(i));
+      const auto p = pool_in(full, a.analysis, full.frame(i)),
+                 q = pool_in(recording, b.analysis, recording.frame(i));
       ASSERT_TRUE(p && q);
       ASSERT_EQ(p->edge.size(), q->edge.size());
       for (std::size_t e = 0; e < p->edge.size(); ++e)

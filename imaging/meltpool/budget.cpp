@@ -23,7 +23,7 @@ struct Input {
 };
 
 /// What the fits leave at an end of an analytic pool at a random place of the grid, px (correction
-/// study, correction_test.cpp), and the depth's extrapolation.
+/// study on synthetic passages), and the depth's extrapolation.
 constexpr double u_fit = 0.06;
 
 /// Half the width of the middle 68.3 %: the standard deviation of a normal distribution, and finite
@@ -156,18 +156,22 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
     const auto [u_log, how] = level_uncertainty(h, a, s);
     if (pool->front_found)
       add("reference signal S*", "A",
-          "place of the front by bootstrap over lines and for another point spread; independent of "
-          "emissivity and transmission",
+          "front, S* and point spread together, by bootstrap over lines within what is known of "
+          "the "
+          "point spread; independent of emissivity and transmission",
           [&](gsl_rng* r) {
-            return Effect{along * normal(r, pool->u_end),
-                          across * pool->depth_by_log_level * normal(r, found->relative_u)};
+            if (pool->draws.empty()) return Effect{along * normal(r, pool->u_end), 0};
+            const auto& d = pool->draws[gsl_rng_uniform_int(r, pool->draws.size())];
+            const double extrapolated =
+                pool->sides_fitted ? 0 : pool->depth_by_log_level * normal(r, found->relative_u);
+            return Effect{along * d.length, across * (d.depth + extrapolated)};
           });
     else
       add("level", "B", how, [&, u = u_log](gsl_rng* r) {
         const double d = normal(r, u);
         return Effect{along * pool->by_log_level * d, across * pool->depth_by_log_level * d};
       });
-    if (pool->front_found) {
+    if (pool->front_found && !pool->sides_fitted) {
       const double apart = std::log((found->blurred_signal - dark) / (found->signal - dark));
       add("level of the depth", "B",
           "the depth is measured at the signal that the blurred front shows; without blur it lies "
@@ -183,7 +187,8 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
         "mean of the frames' outlines against the outline of the mean pool",
         [&](gsl_rng* r) {
           return Effect{
-              along * normal(r, std::hypot(pool->u_onset, pool->front_found ? 0 : pool->u_end)), 0};
+              along * normal(r, std::hypot(pool->u_onset, pool->front_found ? 0 : pool->u_end)),
+              across * normal(r, pool->u_sides)};
         },
         noise, noise_depth);
     add(
@@ -195,23 +200,30 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
           const double by_point_spread = s.point_spread / std::max(budget.blur_across, 1e-9);
           const double by_motion =
               shift * shift * s.u_integration_time / (12 * std::max(budget.blur_along, 1e-9));
-          const double d = by_point_spread * normal(r, s.u_point_spread) + normal(r, by_motion);
-          return Effect{along * pool->by_blur * d,
+          const double spread = by_point_spread * normal(r, s.u_point_spread);
+          const double motion = normal(r, by_motion);
+          // With a front the draws of S* hold the point spread, and its share of fitted sides.
+          const double length = (pool->front_found ? 0 : spread) + motion;
+          const double depth = pool->sides_fitted ? 0 : spread + motion;
+          return Effect{along * pool->by_blur * length,
                         across * (pool->depth - pool->blurred_depth) *
-                            (2 * d / std::max(budget.blur_across, 1e-9))};
+                            (2 * depth / std::max(budget.blur_across, 1e-9))};
         },
         along * (pool->length() - pool->blurred_length),
         across * (pool->depth - pool->blurred_depth));
     // Beside a shoulder of latent heat the signal is flat and the extrapolation takes 0.3 to 0.5 px
-    // too little off (synthetic passages, coverage_test.cpp).
+    // too little off (synthetic passages); only side views still extrapolate there.
     const bool shoulder = pool->front_found && found->signature == Signature::latent_heat;
     const double least_doubt = shoulder ? 0.6 : 0.2;
     add("model of the ends", "B",
-        "what the fits leave on analytic pools; the depth's by half the extrapolation's own doubt",
+        "what the fits leave on analytic pools; an extrapolated depth's by half its own doubt",
         [&, least_doubt](gsl_rng* r) {
-          return Effect{along * std::sqrt(2.0) * normal(r, u_fit),
-                        across * (normal(r, u_fit) + (2 * gsl_rng_uniform(r) - 1) *
-                                                         std::max(pool->doubt_depth, least_doubt))};
+          const double length = std::sqrt(2.0) * normal(r, u_fit);
+          const double depth =
+              pool->sides_fitted ? std::sqrt(2.0) * normal(r, u_fit)
+                                 : normal(r, u_fit) + (2 * gsl_rng_uniform(r) - 1) *
+                                                          std::max(pool->doubt_depth, least_doubt);
+          return Effect{along * length, across * depth};
         });
     if (edge.present)
       add("border of the plate", "A",

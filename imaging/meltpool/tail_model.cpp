@@ -92,6 +92,9 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
     const Freedom freedom = law.interval > 0 ? gradual : abrupt;
     const Vector p = minimise(*patch, first_guess(*patch, law), freedom, steps);
     const double trial = linearise(*patch, p, false).total();
+    // Heat released over less than any steel has is none: the shortest interval would fit an abrupt
+    // front and a point spread further off than is likely, with a front a pixel too far in.
+    if (law.interval > 0 && chi < 1e300 && p(interval) <= narrowest * 1.001) continue;
     if (trial < chi) chi = trial, best = p, free = freedom;
   }
   const auto place = outermost(*patch, best, edge, best(theta_star));

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "imaging/meltpool/tail_law.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace meltproof::imaging {
+namespace {
+
+constexpr double star = 7.5;
+
+TEST(TailLaw, LeavesLiquidMetalAsItIs) {
+  const TailLaw law{.log_signal = star, .ratio = 0.4, .interval = 0.6};
+  for (const double above : {0.05, 0.4, 1.5})
+    EXPECT_DOUBLE_EQ(tail_law(law, star + above, 0.02).log_signal, star + above);
+}
+
+TEST(TailLaw, StepsAbruptlyWhereNoHeatIsReleased) {
+  const TailLaw law{.log_signal = star, .ratio = std::log(1.5)};
+  EXPECT_NEAR(tail_law(law, star - 0.1, 0.02).log_signal, star - 0.1 + std::log(1.5), 1e-12);
+  // In a cell that the front halves, half of the radiance is that of solid metal.
+  EXPECT_NEAR(tail_law(law, star, 0.02).log_signal, star + std::log(1.25), 1e-3);
+}
+
+// Energy: while the metal freezes it gives back what it released, so that far behind the front its
+// temperature, 1/(1 - ln S / B), is higher by L than that of liquid metal of the same enthalpy.
+TEST(TailLaw, ReturnsTheHeatThatIsReleased) {
+  const TailLaw law{.log_signal = star, .interval = 0.6};
+  const double theta = star - 1.4;
+  const auto tau = [&](double log_signal) { return 1 / (1 - (log_signal - star) / law.steepness); };
+  const double released = (1 - TailLaw::sensible) * law.interval / law.steepness;
+  EXPECT_NEAR(tau(tail_law(law, theta, 0.02).log_signal) - tau(theta), released, 1e-12);
+  EXPECT_NEAR(law.rise(), 0.88 * 0.6, 1e-12);
+}
+
+TEST(TailLaw, HasTheDerivativesOfItsValue) {
+  // That the cell's own width changes with theta is left out of the derivatives: a hundredth of it.
+  constexpr double d = 1e-6, cell = 0.01;
+  const auto value = [&](TailLaw law, double theta) {
+    return tail_law(law, theta, cell).log_signal;
+  };
+  for (const TailLaw& law :
+       {TailLaw{.log_signal = star, .ratio = 0.4, .interval = 0.55},
+        TailLaw{.log_signal = star, .interval = 0.7}, TailLaw{.log_signal = star, .ratio = 0.4}}) {
+    for (const double below : {0.005, 0.1, 0.31, 0.9}) {
+      const double theta = star - below;
+      const TailLawValue v = tail_law(law, theta, cell);
+      const auto moved = [&](double TailLaw::*of) {
+        TailLaw up = law, down = law;
+        up.*of += d;
+        down.*of -= d;
+        return (value(up, theta) - value(down, theta)) / (2 * d);
+      };
+      EXPECT_NEAR(v.by_theta, (value(law, theta + d) - value(law, theta - d)) / (2 * d), 2e-3);
+      EXPECT_NEAR(v.by_theta_star, moved(&TailLaw::log_signal), 2e-3);
+      EXPECT_NEAR(v.by_ratio, moved(&TailLaw::ratio), 1e-5);
+      if (law.interval > 0) {
+        EXPECT_NEAR(v.by_interval, moved(&TailLaw::interval), 1e-5);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace meltproof::imaging
