@@ -88,20 +88,23 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
   Vector best = smooth;
   Freedom free;
   double chi = 1e300;
+  std::size_t used = 0;
+  for (const double w : patch->weight) used += w > 0 ? 1 : 0;
+  const double degrees = static_cast<double>(used) - parameters;
   for (const TailLaw& law : {TailLaw{.ratio = 0.4}, TailLaw{.ratio = 0.05, .interval = 0.55}}) {
     const Freedom freedom = law.interval > 0 ? gradual : abrupt;
     const Vector p = minimise(*patch, first_guess(*patch, law), freedom, steps);
     const double trial = linearise(*patch, p, false).total();
+    // A shoulder has one parameter more, and must explain three standard deviations more with it.
     // Heat released over less than any steel has is none: the shortest interval would fit an abrupt
     // front and a point spread further off than is likely, with a front a pixel too far in.
-    if (law.interval > 0 && chi < 1e300 && p(interval) <= narrowest * 1.001) continue;
+    const double noise = std::max(1.0, chi / degrees);
+    if (law.interval > 0 && (chi - trial < 9 * noise || p(interval) <= narrowest * 1.001)) continue;
     if (trial < chi) chi = trial, best = p, free = freedom;
   }
   const auto place = outermost(*patch, best, edge, best(theta_star));
   if (!place) return std::nullopt;
   const Linearised at = linearise(*patch, best, true);
-  std::size_t used = 0;
-  for (const double w : patch->weight) used += w > 0 ? 1 : 0;
 
   TailModel model;
   model.law = law_of(*patch, best);
@@ -112,7 +115,7 @@ std::optional<TailModel> fit_tail(const Stack& stack, double dark, const Blur& b
   model.front = along_line(*patch, *place);
   model.slope = -field_at(*patch, best, place->x, patch->y(place->row)).by_x / patch->scale;
   model.blurred = blurred_log_signal(*patch, best, place->x, place->row);
-  model.misfit = std::max(1.0, chi / static_cast<double>(used - parameters));
+  model.misfit = std::max(1.0, chi / degrees);
   model.explained = (without.total() - chi) / model.misfit;
   for (int l = 0; l < patch->lines; ++l) {
     const auto i = static_cast<std::size_t>(l);
