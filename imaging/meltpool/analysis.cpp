@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include <fmt/format.h>
 
@@ -17,56 +18,63 @@ bool is_forward(ScanDirection direction) {
   return direction == ScanDirection::right || direction == ScanDirection::down;
 }
 
+/// Eight numbers side by side. A vector of the compiler's own (GCC and Clang), because GCC does not
+/// find the lanes in a loop over arrays.
+constexpr std::size_t lanes = 8;
+using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
+using Doubles [[gnu::vector_size(lanes * sizeof(double))]] = double;
+
 /// Lowest, highest and mean of the values that count. Sums run in eight lanes, whatever the
 /// machine, so that they can be done at once and come out the same everywhere.
 Range range_of(const std::vector<float>& values) {
-  constexpr std::size_t lanes = 8;
   const std::size_t n = values.size();
   if (n == 0) return {NAN, NAN, NAN};
-  float low[lanes], high[lanes];
-  double sum[lanes];
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    low[lane] = high[lane] = values[0];
-    sum[lane] = 0;
-  }
+  Floats low = values[0] - Floats{}, high = low;
+  Doubles sum{};
   const float* p = values.data();
   std::size_t i = 0;
   for (; i + lanes <= n; i += lanes, p += lanes) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) low[lane] = std::min(low[lane], p[lane]);
-    for (std::size_t lane = 0; lane < lanes; ++lane) high[lane] = std::max(high[lane], p[lane]);
-    for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += static_cast<double>(p[lane]);
+    Floats v;
+    std::memcpy(&v, p, sizeof v);
+    low = v < low ? v : low;
+    high = high < v ? v : high;
+    sum += __builtin_convertvector(v, Doubles);
   }
   for (std::size_t lane = 0; i < n; ++i, ++lane) {
-    low[lane] = std::min(low[lane], values[i]);
-    high[lane] = std::max(high[lane], values[i]);
+    low[lane] = std::min<float>(low[lane], values[i]);
+    high[lane] = std::max<float>(high[lane], values[i]);
     sum[lane] += static_cast<double>(values[i]);
   }
-  Range r{static_cast<double>(*std::min_element(low, low + lanes)),
-          static_cast<double>(*std::max_element(high, high + lanes)), 0};
-  for (const double lane : sum) r.mean += lane;
-  r.mean /= static_cast<double>(n);
-  return r;
+  float lowest = low[0], highest = high[0];
+  double total = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    lowest = std::min<float>(lowest, low[lane]);
+    highest = std::max<float>(highest, high[lane]);
+    total += sum[lane];
+  }
+  return {static_cast<double>(lowest), static_cast<double>(highest),
+          total / static_cast<double>(n)};
 }
 
-/// Pixels with a status; a loop over bytes that sums bytes, at most 255 at a time, is done at once.
-std::size_t count_of(const std::vector<PixelStatus>& status, PixelStatus wanted) {
-  std::size_t total = 0;
-  for (std::size_t i = 0; i < status.size();) {
-    const std::size_t end = std::min(status.size(), i + 240);
-    std::uint8_t part = 0;
-    for (; i < end; ++i) part = static_cast<std::uint8_t>(part + (status[i] == wanted ? 1 : 0));
-    total += part;
+/// Counts the pixels that are not good into `result`. Nearly every frame has none of them, or few,
+/// which the search for the next byte that is not zero sees many pixels at a time.
+void count_marks(const std::vector<PixelStatus>& status, FrameResult& result) {
+  static_assert(static_cast<int>(PixelStatus::good) == 0);
+  std::uint8_t any = 0;
+  for (const PixelStatus s : status) any |= static_cast<std::uint8_t>(s);
+  if (any == 0) return;
+  for (const PixelStatus s : status) {
+    result.saturated += s == PixelStatus::saturated ? 1 : 0;
+    result.under_range += s == PixelStatus::under_range ? 1 : 0;
+    result.dead += s == PixelStatus::dead ? 1 : 0;
   }
-  return total;
 }
 
 FrameResult describe(const Frame& frame) {
   FrameResult result;
   result.index = frame.index;
   result.time = frame.time;
-  result.saturated = count_of(frame.status, PixelStatus::saturated);
-  result.under_range = count_of(frame.status, PixelStatus::under_range);
-  result.dead = count_of(frame.status, PixelStatus::dead);
+  count_marks(frame.status, result);
   if (result.dead == 0) {
     result.values = range_of(frame.values);
   } else {
@@ -97,18 +105,17 @@ void measure(FrameResult& result, Region region, ScanDirection direction, const 
   result.area = region.area * px * py;
   result.orientation =
       0.5 * std::atan2(2 * region.xy * px * py, region.xx * px * px - region.yy * py * py);
-  region.edge.clear();  // a long recording would hold too many
   result.region = std::move(region);
 }
 
 /// The pool of a frame at a level, with the front marked first where the level has a step.
 struct Search {
-  Search(const RecordingHeader& header, const Level& wanted, bool along_scan_x)
+  Search(const RecordingHeader& header, const Level& wanted, bool along_scan_x, Outline outline)
       : level(wanted),
         along_x(along_scan_x),
         width(header.width),
         height(header.height),
-        finder(header.width, header.height, wanted.interpolation) {}
+        finder(header.width, header.height, wanted.interpolation, outline) {}
   std::optional<Region> pool(const Frame& frame) {
     if (!level.step) return finder.largest(frame.values, *level.value);
     front_lines = mark_fronts(frame.values, width, height, along_x, *level.step, marked);
@@ -230,7 +237,7 @@ ScanDirection parse_scan_direction(const std::string& text) {
 std::optional<Region> pool_in(const Recording& recording, const Analysis& analysis,
                               const Frame& frame) {
   if (!analysis.level.value) return std::nullopt;
-  Search search(recording.header(), analysis.level, analysis.along_x);
+  Search search(recording.header(), analysis.level, analysis.along_x, Outline::edge);
   auto region = search.pool(frame);
   if (!region || region->pixels < smallest_pool) return std::nullopt;
   return region;
@@ -248,7 +255,7 @@ Analysis analyse_at(const Recording& recording, const Level& level, ScanDirectio
   analysis.level = level;
   analysis.unit = pixel.known() ? std::string("m") : std::string("px");
   analysis.along_x = direction == ScanDirection::right || direction == ScanDirection::left;
-  Search search(header, analysis.level, analysis.along_x);
+  Search search(header, analysis.level, analysis.along_x, Outline::dimensions);
   Frame frame;
   std::size_t brightest = 0, largest = 0;
   Progress progress("extract", static_cast<double>(header.frames));

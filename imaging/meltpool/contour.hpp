@@ -7,48 +7,16 @@
 #include <span>
 #include <vector>
 
+#include "imaging/meltpool/contour_outline.hpp"
+#include "imaging/meltpool/contour_region.hpp"
+#include "imaging/meltpool/contour_runs.hpp"
+
 namespace meltproof::imaging {
 
-/// A point of the image: x to the right, y downwards, in pixels; (0, 0) is the *centre* of the
-/// upper left pixel, so the image spans -0.5 to width - 0.5.
-struct Point {
-  double x = 0, y = 0;
-};
-
-/// A piece of an edge, directed so that the region lies on its left when y is drawn upwards.
-struct Segment {
-  Point from, to;
-};
-
-/// Lower and upper end of a region along one axis, px.
-struct Extent {
-  double low = 0, high = 0;
-  double size() const { return high - low; }
-};
-
-/// A connected region above the level.
-struct Region {
-  Extent x, y;                    ///< px, to a fraction of a pixel
-  double area = 0;                ///< px^2
-  Point centroid;                 ///< px
-  double xx = 0, xy = 0, yy = 0;  ///< second central moments of the area, px^2
-  std::size_t pixels = 0;         ///< pixels at or above the level
-  bool left = false, right = false, top = false,
-       bottom = false;        ///< borders of the image it touches
-  std::vector<Segment> edge;  ///< in no particular order; they close up
-  bool at_border() const { return left || right || top || bottom; }
-  /// Area of the region over that of the ellipse with the same second moments: 1 for an ellipse,
-  /// little for anything ragged, branched or hollow.
-  double compactness() const;
-};
-
-/// How a value between two pixels is interpolated.
-struct Interpolation {
-  /// With a floor, the logarithm of (value - dark) is interpolated linearly, since emission falls
-  /// exponentially from the pool outwards; it needs the signal without light. Without, the value
-  /// is.
-  bool logarithmic = false;
-  double dark = 0;
+/// What is wanted of a region.
+enum class Outline {
+  edge,       ///< all of it, with Region::edge
+  dimensions  ///< without the edge, which a long recording would hold too often
 };
 
 /// Finds regions in frames of one size; keeps its memory between frames.
@@ -61,7 +29,8 @@ struct Interpolation {
 /// pixels.
 class RegionFinder {
  public:
-  RegionFinder(std::size_t width, std::size_t height, Interpolation interpolation);
+  RegionFinder(std::size_t width, std::size_t height, Interpolation interpolation,
+               Outline outline = Outline::edge);
   /// The region with most pixels at or above `level`, or nothing if there is none.
   /// @param values width * height, row-major; a value that is no number counts as below the level,
   ///        unless at least three of its four neighbours are above, whose mean it then takes.
@@ -71,21 +40,18 @@ class RegionFinder {
                                      double distance);
 
  private:
+  std::optional<Region> find(std::span<const float> values, double level,
+                             const std::optional<Near>& near);
+  bool mark(std::span<const float> values, float level);
   void mend(std::span<const float> values, float level);
-  bool joined(std::size_t x, std::size_t y, float level) const;
-  void flood(std::size_t seed, std::int32_t label, float level);
-  double crossing(float inside, float outside, double level) const;
-  std::optional<Region> find(std::span<const float> values, double level, const Point* place,
-                             double distance);
-  Region outline(std::int32_t label, float level);
 
   std::ptrdiff_t width_, height_;
   Interpolation interpolation_;
-  std::span<const float> values_;
-  double log_level_ = 0;
+  Outline outline_;
   std::vector<float> mended_;
-  std::vector<std::int32_t> labels_;
-  std::vector<std::size_t> pixels_, stack_, largest_;
+  std::vector<std::uint8_t> marks_;  ///< 1 at or above the level
+  RunFinder runs_;
+  OutlineWalker walker_;
 };
 
 }  // namespace meltproof::imaging

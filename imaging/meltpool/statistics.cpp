@@ -5,15 +5,30 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
 namespace meltproof::imaging {
 namespace {
 
-/// S / sqrt(var S), both of Mann (1945) and Kendall (1975). Of long series evenly spaced values are
-/// taken: the cost grows with the square of the number.
+/// Sorts `v` and counts its pairs (i, j > i) with v[i] > v[j] on the way (Knight 1966): merging
+/// two sorted halves, each number taken from the later one passes all that are left in the earlier.
+std::int64_t sort_and_count(std::span<double> v, std::span<double> spare) {
+  if (v.size() < 2) return 0;
+  const std::size_t half = v.size() / 2;
+  std::int64_t falling = sort_and_count(v.first(half), spare.first(half)) +
+                         sort_and_count(v.subspan(half), spare.subspan(half));
+  for (std::size_t i = 0, j = half, k = 0; k < v.size(); ++k) {
+    const bool later = j < v.size() && (i == half || v[j] < v[i]);
+    if (later) falling += static_cast<std::int64_t>(half - i);
+    spare[k] = later ? v[j++] : v[i++];
+  }
+  std::copy_n(spare.begin(), v.size(), v.begin());
+  return falling;
+}
+
+/// S / sqrt(var S), both of Mann (1945) and Kendall (1975). Of series longer than 2000 evenly
+/// spaced values are taken.
 double mann_kendall(std::span<const double> all) {
   constexpr std::size_t most = 2000;
   const std::size_t step = (all.size() + most - 1) / most;
@@ -21,16 +36,20 @@ double mann_kendall(std::span<const double> all) {
   for (std::size_t i = 0; i < all.size(); i += step) v.push_back(all[i]);
   const auto n = static_cast<double>(v.size());
   if (v.size() < 4) return 0;
-  double s = 0;
-  std::map<double, double> ties;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    ties[v[i]] += 1;
-    std::int64_t rising = 0;
-    for (std::size_t j = i + 1; j < v.size(); ++j) rising += (v[j] > v[i]) - (v[j] < v[i]);
-    s += static_cast<double>(rising);
-  }
+  std::vector<double> spare(v.size());
+  const std::int64_t falling = sort_and_count(v, spare);
   double variance = n * (n - 1) * (2 * n + 5);
-  for (const auto& [value, t] : ties) variance -= t * (t - 1) * (2 * t + 5);
+  const auto size = static_cast<std::int64_t>(v.size());
+  std::int64_t pairs = size * (size - 1) / 2;  // that are not tied
+  for (std::size_t i = 0; i < v.size();) {
+    std::size_t end = i + 1;
+    while (end < v.size() && v[end] == v[i]) ++end;
+    const auto t = static_cast<double>(end - i);
+    variance -= t * (t - 1) * (2 * t + 5);
+    pairs -= static_cast<std::int64_t>((end - i) * (end - i - 1) / 2);
+    i = end;
+  }
+  const auto s = static_cast<double>(pairs - 2 * falling);
   if (!(variance > 0) || s == 0) return 0;
   return (s > 0 ? s - 1 : s + 1) / std::sqrt(variance / 18);
 }

@@ -7,22 +7,12 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include "solver/flow/melt_case.hpp"
 #include "solver/step/engine.hpp"
 #include "solver/verification/surface_setup.hpp"
 
 namespace meltproof::solver {
 namespace {
-
-VerificationCase melt_case() {
-  VerificationCase c;
-  c.name = "free_surface_test";
-  c.density = 7763;
-  c.viscosity = 0.1;
-  c.surface_tension = 1.82;
-  c.sound_speed = 50;
-  c.temperature = 2000;
-  return c;
-}
 
 constexpr double dx = 5e-6;
 
@@ -100,96 +90,9 @@ TEST(Interface, ADropHasTheAreaOfItsSphere) {
   }
 }
 
-namespace {
-
-/// Eight layers of melt on a wall, eight by eight periodic, without gravity or surface tension;
-/// everything is pressed together along x.
-Engine make_layer(double pressed, double relaxation, double diffusion) {
-  VerificationCase c = melt_case();
-  c.gravity = 0;
-  c.surface_tension = 0;
-  c.variant = "corrected";
-  const Mixture mixture = melt_and_wall(c);
-  Particles particles = fill_cells(c, dx, mixture, {0, 0, -4}, {8, 8, 8}, [](const Vector& at) {
-    return at[2] < 0 ? Fill::wall : Fill::melt;
-  });
-  for (Vector& at : particles.position) {
-    at[0] *= pressed;
-  }
-  Model model = surface_model(c);
-  model.flow->density_relaxation = relaxation;
-  model.flow->density_diffusion = diffusion;
-  model.domain.lower = {0, 0, -4 * dx};
-  model.domain.upper = {8 * pressed * dx, 8 * dx, 16 * dx};
-  model.domain.face[0] = model.domain.face[1] = {Face::periodic, Face::periodic};
-  Engine engine(std::move(particles), mixture, Diffusivity{}, model);
-  const std::size_t n = engine.particles().size();
-  engine.set_state(std::vector<Vector>(n), std::vector<double>(n, c.density / pressed));
-  return engine;
-}
-
-/// Largest |rho/expected - 1| of the melt above `height`.
-double worst_density(const Engine& engine, double expected, double height) {
-  double worst = 0;
-  for (const std::uint32_t i : engine.flow().liquid()) {
-    if (engine.particles().position[i][2] > height) {
-      worst = std::max(worst, std::abs(engine.particles().density[i] / expected - 1));
-    }
-  }
-  return worst;
-}
-
-}  // namespace
-
-TEST(FreeSurfaceFlow, ALayerAtRestKeepsItsDensityUpToTheSurface) {
-  Engine engine = make_layer(1, 10, 0.1);
-  while (engine.flow_steps() < 300) {
-    engine.step(1);
-  }
-  EXPECT_LT(worst_density(engine, 7763, -1), 0.005);
-}
-
 // One step, in which densities go a hundredth of the way to their sums.
-TEST(FreeSurfaceFlow, APressedLayerKeepsItsDensityUpToTheSurface) {
-  Engine engine = make_layer(0.9, 1, 0);
-  engine.step(1e-9);
-  EXPECT_LT(worst_density(engine, 7763 / 0.9, 4 * dx), 1e-4);
-}
-
 // Under gravity the plain diffusion, of the smooth profile too, lets the bottom of a layer sink in:
 // after 1500 steps its lowest layers stand some 4 % lower.
-TEST(FreeSurfaceFlow, ALayerUnderGravityKeepsTheSpaceItFills) {
-  VerificationCase c = melt_case();
-  c.gravity = 6e5;
-  c.variant = "corrected";
-  const Mixture mixture = melt_and_wall(c);
-  Particles particles = fill_cells(c, dx, mixture, {0, 0, -4}, {4, 4, 8}, [](const Vector& at) {
-    return at[2] < 0 ? Fill::wall : Fill::melt;
-  });
-  Model model = surface_model(c);
-  // Continuity and diffusion alone: a sum over particles would see that these layers start a
-  // hundredth too high for their weight.
-  model.flow->density_relaxation = 0;
-  model.domain.lower = {0, 0, -4 * dx};
-  model.domain.upper = {4 * dx, 4 * dx, 16 * dx};
-  model.domain.face[0] = model.domain.face[1] = {Face::periodic, Face::periodic};
-  Engine engine(std::move(particles), mixture, Diffusivity{}, model);
-  start_at_rest(engine, [&](const Vector& at) { return c.density * c.gravity * (8 * dx - at[2]); });
-  const auto middle = [&] {
-    double sum = 0;
-    for (const std::uint32_t i : engine.flow().liquid()) {
-      const double z = engine.particles().position[i][2];
-      sum += z < 3.2 * dx ? z : 0;
-    }
-    return sum;
-  };
-  const double before = middle();
-  while (engine.flow_steps() < 1500) {
-    engine.step(1);
-  }
-  EXPECT_NEAR(middle() / before, 1, 0.01);
-}
-
 TEST(FreeSurfaceFlow, PressureAndViscosityNeitherMoveNorTurnADropAsAWhole) {
   const VerificationCase c = melt_case();
   Model model = surface_model(c);
@@ -332,71 +235,6 @@ TEST(FreeSurfaceFlow, AnyNumberOfThreadsGivesTheSameBytes) {
   EXPECT_EQ(one.particles().position, two.particles().position);
   EXPECT_EQ(one.particles().velocity, two.particles().velocity);
   EXPECT_EQ(one.particles().density, two.particles().density);
-}
-
-// Heat, species, mass and bytes of a track with everything on: a beam melts grains and plate, the
-// melt flows under recoil and Marangoni forces, evaporates and freezes.
-TEST(FreeSurfaceFlow, ATrackKeepsEnergySpeciesAndMass) {
-  const Mixture mixture{read_material("data/materials/316L.toml"),
-                        read_material("data/materials/AlSi10Mg.toml")};
-  const double d = 10e-6, volume = d * d * d;
-  const auto run = [&](int threads) {
-    omp_set_num_threads(threads);
-    Particles particles;
-    particles.spacing = d;
-    for (int k = 0; k < 9; ++k) {
-      for (int j = 0; j < 16; ++j) {
-        for (int i = 0; i < 20; ++i) {
-          const bool grain = k == 8 && i > 6 && i < 13 && j > 5 && j < 10 && (i + j) % 3 != 0;
-          if (k < 8 || grain) {
-            particles.add(static_cast<std::int64_t>(particles.size()),
-                          {(i + 0.5) * d, (j + 0.5) * d, (k - 7.5) * d},
-                          mixture.density(grain ? 1 : 0) * volume, volume,
-                          mixture.enthalpy(300, grain ? 1 : 0), grain ? 1 : 0,
-                          grain ? Origin::additive_powder : Origin::plate);
-          }
-        }
-      }
-    }
-    Model model;
-    model.domain.lower = {0, 0, -80e-6};
-    model.domain.upper = {200e-6, 160e-6, 10e-6};
-    model.laser = Laser{
-        .power = 175, .radius = 40e-6, .speed = 0.375, .start_x = 80e-6, .y = 80e-6, .exposure = 1};
-    model.surface_loss = SurfaceLossSettings{};
-    model.flow = FlowSettings{};
-    Engine engine(std::move(particles), mixture,
-                  read_diffusivity("data/materials/diffusivity.toml", "liquid_metal"), model);
-    const double enthalpy = engine.total_enthalpy(), additive = engine.total_additive_mass();
-    double mass = 0, mass_after = 0;
-    for (const double m : engine.particles().mass) {
-      mass += m;
-    }
-    while (engine.time() < 5e-5) {
-      engine.step(5e-5);
-    }
-    // Particles change places, so masses are added up in the order of what they are.
-    std::vector<double> sorted = engine.particles().mass;
-    std::sort(sorted.begin(), sorted.end());
-    for (const double m : sorted) {
-      mass_after += m;
-    }
-    const EnergyLedger& ledger = engine.ledger();
-    EXPECT_GT(engine.flow().liquid().size(), 100U) << "the test is to melt";
-    EXPECT_GT(ledger.evaporated, 0) << "and to evaporate";
-    EXPECT_NEAR((engine.total_enthalpy() - enthalpy) /
-                    (ledger.absorbed - ledger.evaporated - ledger.radiated - ledger.convected),
-                1, 1e-10);
-    EXPECT_NEAR(engine.total_additive_mass() / additive, 1, 1e-12);
-    EXPECT_NEAR(mass_after / mass, 1, 1e-13);
-    omp_set_num_threads(1);
-    return engine;
-  };
-  const Engine one = run(1), two = run(2);
-  EXPECT_EQ(one.particles().position, two.particles().position);
-  EXPECT_EQ(one.particles().velocity, two.particles().velocity);
-  EXPECT_EQ(one.particles().enthalpy, two.particles().enthalpy);
-  EXPECT_EQ(one.particles().concentration, two.particles().concentration);
 }
 
 }  // namespace meltproof::solver

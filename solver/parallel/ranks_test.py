@@ -82,10 +82,14 @@ class AnyNumberOfRanks(unittest.TestCase):
         assert_same(self, self.whole, folder)
 
     def test_what_cannot_be_shared_is_refused_in_a_sentence(self):
-        done = run_case(self.root / "gas", "--set", "flow.surroundings=gas", ranks=2)
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(done.stderr.count("flow.surroundings = \"gas\" cannot be divided among several ranks"), 1,
-                         done.stderr)
+        for setting, said in (("flow.surroundings=gas", 'flow.surroundings = "gas"'),
+                              ("physics.surface_conduction=true", "physics.surface_conduction = true"),
+                              ("laser.absorption=ray_traced", 'laser.absorption = "ray_traced"')):
+            with self.subTest(setting):
+                done = run_case(self.root / "refused", "--set", setting, ranks=2)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stderr.count(f"{said} cannot be divided among several ranks"), 1, done.stderr)
+                self.assertFalse((self.root / "refused" / "run.h5").exists())
 
     def test_processes_that_do_not_know_of_each_other_are_stopped(self):
         # As srun starts them without a PMIx that both sides speak: four runs into the same folder.
