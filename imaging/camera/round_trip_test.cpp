@@ -100,6 +100,15 @@ TEST(ReferenceSignal, FitsThePointSpreadWithTheFront) {
     EXPECT_EQ(m.reference.model.interval, 0) << "an abrupt front";
     EXPECT_GT(m.reference.model.variance * off, 0);
     expect_length(m, film, 0.02);
+    const double pixel = s.camera.pixel_size;
+    // With the point spread as it was told the length would be 0.09 px off, and without the front's
+    // law at the leading edge as well.
+    EXPECT_NEAR(m.budget->length.value, film.length, 0.07 * pixel);
+    EXPECT_NEAR(m.budget->depth.value, film.depth, 0.07 * pixel);
+    for (const auto& row : m.budget->rows)
+      if (row.name == "reference signal S*") {
+        EXPECT_GT(row.u_length, 0.005 * pixel);
+      }
   }
 }
 
