@@ -22,9 +22,10 @@ struct TailLaw {
   double interval = 0;    ///< w, of theta
   double steepness = steepness_of_steel;  ///< B, d ln S / d ln T at the liquidus
 
-  /// m, the part of the enthalpy between liquidus and solidus that cools the metal: 50 K of 316L
-  /// over these and the 370 K of its latent heat (L / c; Mills 2002, Recommended values of
-  /// thermophysical properties for selected commercial alloys). A recording does not tell it apart
+  /// m, the part of the enthalpy between liquidus and solidus that cools the metal. 316L freezes
+  /// over 50 K and gives off 274.7 kJ/kg there (Table A1 of the source paper): with its heat
+  /// capacities of 714 and 847 J/(kg K) that is 0.13 to 0.15; 0.12 are 50 K beside the 370 K of the
+  /// latent heat with which the virtual camera's tails are made. A recording does not tell it apart
   /// from a change of the emissivity.
   static constexpr double sensible = 0.12;
 
