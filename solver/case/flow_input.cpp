@@ -40,6 +40,14 @@ InputTable flow_table(FlowInput& f) {
                           "flow's speed, and high enough for the pressures that act.",
                  .minimum = 1,
                  .maximum = 5000})
+      .quantity(
+          s.courant,
+          {.name = "courant",
+           .unit = "1",
+           .about = "Of the acoustic step C h/(c + |v|); 0.25 is the paper's (Eq. 5), with 0.4 "
+                    "nothing of the verification cases changes (solver/flow/README.md).",
+           .minimum = 0.01,
+           .maximum = 0.7})
       .quantity(f.smallest_drop, {.name = "smallest_drop",
                                   .unit = "m",
                                   .about = "Radius of a drop whose capillary pressure may compress "

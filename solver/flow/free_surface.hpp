@@ -38,7 +38,9 @@ enum class DensityDiffusion {
 
 /// How the melt flows.
 struct FlowSettings {
-  double sound_speed = 50;         ///< c, m s-1: p = c^2 (rho - rho0)
+  double sound_speed = 50;  ///< c, m s-1: p = c^2 (rho - rho0)
+  /// C of the acoustic limit C h/(c + |v|). Morris et al. (1997) and the paper's Eq. 5 have 0.25.
+  double courant = 0.4;
   double density_diffusion = 0.1;  ///< delta of Molteni & Colagrossi
   DensityDiffusion diffusion_form = DensityDiffusion::corrected;
   /// N of density_excess(): densities go to the particles' own sum within N smoothing lengths'

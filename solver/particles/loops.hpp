@@ -21,12 +21,14 @@ void for_each_particle(std::size_t n, const Body& body) {
   }
 }
 
-/// The largest value(i) for i < n, or `least` if n is zero.
+/// The largest value(i) for i < n, or `least` if n is zero, on all threads.
 template <class Value>
 double block_max(std::size_t n, double least, const Value& value) {
   double result = least;
-  for (std::size_t i = 0; i < n; ++i) {
-    result = std::max(result, value(i));
+  const auto count = static_cast<std::int64_t>(n);
+#pragma omp parallel for schedule(static) reduction(max : result) if (count > 2000)
+  for (std::int64_t i = 0; i < count; ++i) {
+    result = std::max<double>(result, value(static_cast<std::size_t>(i)));
   }
   return result;
 }

@@ -55,8 +55,9 @@ Engine::Engine(Particles particles, Mixture mixture, Diffusivity diffusivity, co
 /// What the beam meets, and what loses heat through its plan area.
 void Engine::look_from_above() {
   if (model_.laser || model_.surface_loss) {
-    surface_ = find_surface(particles_, model_.domain.lower, model_.domain.upper,
-                            model_.laser ? model_.laser->slant() : Slant{}, ranks());
+    surface_ = surface_search_.find(particles_, model_.domain.lower, model_.domain.upper,
+                                    model_.laser ? model_.laser->slant() : Slant{}, ranks());
+    surface_search_.moves(movers_);
   }
 }
 
@@ -174,8 +175,13 @@ void Engine::check_numbers() const {
     return fmt::format("step {}, time {:.6g} s, particle {} at ({:.3g}, {:.3g}, {:.3g}) um", steps_,
                        time_, particles_.identity[i], 1e6 * at[0], 1e6 * at[1], 1e6 * at[2]);
   };
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (particles_.home[i] == Home::here && !std::isfinite(particles_.temperature[i])) {
+  const auto bad = [&](std::size_t i) {
+    return particles_.home[i] == Home::here && !std::isfinite(particles_.temperature[i]);
+  };
+  const bool any =
+      block_max(particles_.size(), 0, [&](std::size_t i) { return bad(i) ? 1.0 : 0.0; }) > 0;
+  for (std::size_t i = 0; any && i < particles_.size(); ++i) {
+    if (bad(i)) {
       throw std::runtime_error(fmt::format(
           "{}: the temperature is not a number (enthalpy {:.6g} J/kg, concentration {:.6g}; last "
           "conducted power {:.6g} W/m3, source {:.6g} W)",

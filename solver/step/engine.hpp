@@ -216,6 +216,7 @@ class Engine {
   std::vector<Ghost> ghosts_;
   MovingNeighbours neighbours_;
   SurfaceColumns surface_;
+  SurfaceSearch surface_search_;
   SurfaceConduction surface_conduction_;
   std::vector<HeatRecord> heat_records_;
   SpeciesRecords species_records_;

@@ -86,9 +86,7 @@ void Engine::open_round(double longest) {
   halo_->exchange(
       Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = fast_[i]; },
       [&](std::uint32_t i, const double* in) { fast_[i] = *in > 0 ? 1 : 0; });
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    heat_records_[i].fast = fast_[i];
-  }
+  for_each_particle(particles_.size(), [&](std::size_t i) { heat_records_[i].fast = fast_[i]; });
   refresh_ghosts();
   round_time_ = 0;
   round_open_ = boundary_stale_ = true;

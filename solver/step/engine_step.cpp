@@ -62,6 +62,7 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
     StepExtremes motion;
     motion.smoothing_length = kernel_.smoothing_length;
     motion.sound_speed = flow_->settings().sound_speed;
+    motion.courant = flow_->settings().courant;
     motion.speed = extreme[speed];
     motion.gravity = std::hypot(flow_->settings().gravity[0], flow_->settings().gravity[1],
                                 flow_->settings().gravity[2]);

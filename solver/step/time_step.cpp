@@ -13,7 +13,7 @@ StepLimits step_limits(const StepExtremes& e) {
   StepLimits limits;
   const double h = e.smoothing_length;
   if (e.sound_speed > 0) {
-    limits.acoustic = 0.25 * h / (e.sound_speed + e.speed);
+    limits.acoustic = e.courant * h / (e.sound_speed + e.speed);
   }
   if (e.kinematic_viscosity > 0) {
     limits.viscous = 0.125 * h * h / e.kinematic_viscosity;

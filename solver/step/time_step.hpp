@@ -11,6 +11,7 @@ namespace meltproof::solver {
 struct StepExtremes {
   double smoothing_length = 0;     ///< h, m
   double sound_speed = 0;          ///< c, m s-1; zero while particles are fixed
+  double courant = 0.25;           ///< C of the acoustic limit
   double speed = 0;                ///< largest |v|, m s-1
   double kinematic_viscosity = 0;  ///< largest nu, m2 s-1
   double surface_tension = 0;      ///< largest sigma, N m-1
@@ -23,7 +24,7 @@ struct StepExtremes {
 
 /// The largest allowed step of each criterion, s; infinite where it does not apply.
 struct StepLimits {
-  double acoustic = std::numeric_limits<double>::infinity();   ///< 0.25 h/(c + |v|)
+  double acoustic = std::numeric_limits<double>::infinity();   ///< C h/(c + |v|)
   double viscous = std::numeric_limits<double>::infinity();    ///< 0.125 h^2/nu
   double capillary = std::numeric_limits<double>::infinity();  ///< 0.25 sqrt(rho h^3/(2 pi sigma))
   double thermal = std::numeric_limits<double>::infinity();    ///< 0.125 h^2 rho c_p/k
@@ -36,8 +37,8 @@ struct StepLimits {
   std::string smallest_name() const;
 };
 
-/// The criteria of Morris et al. (1997) and the paper's Eq. 5; the last one keeps an evaporating
-/// particle from cooling by more than half of its way back to balance in one step.
+/// The criteria of Morris et al. (1997) and the paper's Eq. 5, where C is 0.25; the last one keeps
+/// an evaporating particle from cooling by more than half of its way back to balance in one step.
 StepLimits step_limits(const StepExtremes& extremes);
 
 }  // namespace meltproof::solver

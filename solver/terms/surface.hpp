@@ -33,11 +33,37 @@ struct SurfaceColumns {
   std::uint32_t at(std::size_t ix, std::size_t iy) const { return top[iy * count_x + ix]; }
 };
 
-/// Finds the topmost particle of every column; of equally high ones the one with the smaller
-/// identity. Where a particle of this rank is on top, it is so among those of all ranks: columns
-/// stand upright in the ranks' boxes, and slanted ones are settled among all ranks (collectively).
+/// Finds the topmost particle of every column, lost ones apart; of equally high ones the one with
+/// the smaller identity. Where a particle of this rank is on top, it is so among those of all
+/// ranks: columns stand upright in the ranks' boxes, and slanted ones are settled among all ranks
+/// (collectively).
 /// @param lower, upper plan view of the domain in m; @param slant of the columns, of the beam.
 SurfaceColumns find_surface(const Particles& particles, const Vector& lower, const Vector& upper,
                             const Slant& slant = {}, const Ranks& ranks = {});
+
+/// **The same, again and again, of particles most of which stand still.** What lies well below the
+/// surface is looked at only when the surface has sunk towards it, so a call costs by the area of
+/// the domain instead of its volume. The result is that of find_surface().
+class SurfaceSearch {
+ public:
+  /// As find_surface(). Who is neither new since forget() nor was named to moves() stands where it
+  /// stood.
+  SurfaceColumns find(const Particles& particles, const Vector& lower, const Vector& upper,
+                      const Slant& slant, const Ranks& ranks);
+  /// To be called when indices have changed.
+  void forget();
+  /// To be told, by index, who may move from now on; once told it holds until forget().
+  void moves(const std::vector<std::uint32_t>& particles);
+
+ private:
+  void choose(const SurfaceColumns& columns, const Particles& particles, const Slant& slant);
+
+  bool known_ = false;
+  std::vector<std::uint32_t> candidates_;
+  std::vector<std::uint8_t> candidate_;  // of every particle
+  // Of every column: what is no candidate lies below the floor; nobody stood there.
+  std::vector<double> floor_;  // m
+  std::vector<std::uint8_t> bare_;
+};
 
 }  // namespace meltproof::solver
