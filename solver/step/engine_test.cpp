@@ -75,6 +75,9 @@ TEST(TimeStep, CriteriaAreThoseOfMorrisAndEquation5) {
   EXPECT_NEAR(limits.gravity, 0.25 * std::sqrt(2e-6 / 9.81), 1e-18);
   EXPECT_NEAR(limits.surface, 5e-7, 1e-20);
   EXPECT_EQ(limits.smallest_name(), "acoustic");
+  EXPECT_NEAR(step_limits({.smoothing_length = 2e-6, .sound_speed = 48, .courant = 0.4, .speed = 2})
+                  .acoustic,
+              1.6e-8, 1e-20);
   EXPECT_EQ(step_limits({.smoothing_length = 1, .sound_speed = 0}).smallest(),
             std::numeric_limits<double>::infinity());
 }

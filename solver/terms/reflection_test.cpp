@@ -99,6 +99,21 @@ TEST(Reflection, AGrooveOfSixtyDegreesAbsorbsThrice) {
   EXPECT_NEAR(seen.budget.absorbed, 100 * (1 - std::pow(1 - share, 3)), 2);
 }
 
+TEST(Reflection, ASteepWallDoesNotStandInItsOwnLight) {
+  // Light that grazes a wall leaves along the steps of its lattice; nothing else is in the way.
+  for (const double steepness : {1.5, 2.75, 4.0}) {
+    const Particles wall =
+        metal(48, 40, 60, [&](const Vector& at) { return at[2] < -steepness * (at[1] - 50e-6); });
+    const Laser laser{.power = 100,
+                      .radius = 10e-6,
+                      .start_x = 120e-6,
+                      .y = 50e-6 + 100e-6 / steepness,
+                      .exposure = 1};
+    const Seen seen = shine(wall, laser, {48 * dx, 40 * dx, 0});
+    EXPECT_NEAR(seen.budget.absorbed, (100 - seen.budget.missed) * share, 0.5) << steepness;
+  }
+}
+
 TEST(Reflection, AMirrorAbsorbsNothingAndABlackBodyEverything) {
   const Particles walls = groove(100e-6, -95e-6, 1, 40, 26);
   const Laser laser{.power = 100, .radius = 10e-6, .start_x = 120e-6, .y = 60e-6, .exposure = 1};

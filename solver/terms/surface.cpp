@@ -113,16 +113,20 @@ SurfaceColumns find_surface(const Particles& particles, const Vector& lower, con
   return columns;
 }
 
-void SurfaceSearch::forget() { known_ = false; }
+void SurfaceSearch::forget() {
+  known_ = false;
+  moves_.clear();
+  movers_.clear();
+}
 
 void SurfaceSearch::moves(const std::vector<std::uint32_t>& particles) {
-  if (!known_) {
-    return;
-  }
   for (const std::uint32_t i : particles) {
-    if (candidate_[i] == 0) {
-      candidate_[i] = 1;
-      candidates_.push_back(i);
+    if (i >= moves_.size()) {
+      moves_.resize(i + std::size_t{1}, 0);
+    }
+    if (moves_[i] == 0) {
+      moves_[i] = 1;
+      movers_.push_back(i);
     }
   }
 }
@@ -133,9 +137,11 @@ SurfaceColumns SurfaceSearch::find(const Particles& particles, const Vector& low
   bool found = false;
   if (known_) {
     columns = empty_columns(particles.spacing, lower, upper);
-    for (const std::uint32_t i : candidates_) {
-      if (there(particles, i)) {
-        look_at(columns, particles, slant, i);
+    for (const auto* some : {&candidates_, &movers_}) {
+      for (const std::uint32_t i : *some) {
+        if (there(particles, i)) {
+          look_at(columns, particles, slant, i);
+        }
       }
     }
     found = true;
@@ -198,7 +204,6 @@ void SurfaceSearch::choose(const SurfaceColumns& columns, const Particles& parti
       }
     }
   }
-  candidate_.assign(particles.size(), 0);
   candidates_.clear();
   for (std::uint32_t i = 0; i < particles.size(); ++i) {
     if (!there(particles, i)) {
@@ -214,7 +219,6 @@ void SurfaceSearch::choose(const SurfaceColumns& columns, const Particles& parti
       }
     }
     if (high) {
-      candidate_[i] = 1;
       candidates_.push_back(i);
     }
   }

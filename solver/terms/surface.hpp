@@ -59,9 +59,10 @@ class SurfaceSearch {
   void choose(const SurfaceColumns& columns, const Particles& particles, const Slant& slant);
 
   bool known_ = false;
-  std::vector<std::uint32_t> candidates_;
-  std::vector<std::uint8_t> candidate_;  // of every particle
-  // Of every column: what is no candidate lies below the floor; nobody stood there.
+  // Those near the surface, and those who may have moved, some in both.
+  std::vector<std::uint32_t> candidates_, movers_;
+  std::vector<std::uint8_t> moves_;  // by particle, as far as somebody does
+  // Of every column: what is neither lies below the floor; nobody stood there.
   std::vector<double> floor_;  // m
   std::vector<std::uint8_t> bare_;
 };
