@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "imaging/recording/bytes.hpp"
 #include "imaging/recording/csv_blocks.hpp"
+#include "imaging/recording/csv_commas.hpp"
 #include "imaging/recording/csv_row.hpp"
 #include "imaging/recording/signal_unit.hpp"
 
@@ -44,6 +45,26 @@ struct Place {
   std::size_t first = 0;
 };
 
+/// Refuses a row with nearly as many values as those beside it, where these make no whole frame: a
+/// value is missing in it, or one too many, and the frame would go by as lost. The last line may be
+/// cut off. A row with few values is a line between frames, their number and time.
+void refuse_uneven_rows(const ByteFile& file, const std::vector<CsvBlock>& blocks,
+                        const RecordingHeader& header) {
+  const auto torn = [&](std::size_t first, std::size_t whole) {
+    return blocks[first].line + blocks[first].rows == blocks[first + 1].line &&
+           blocks[whole].width == header.width && blocks[whole].rows % header.height != 0;
+  };
+  for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
+    const auto& block = blocks[i];
+    if (block.rows != 1 || block.width == header.width || 2 * block.width <= header.width) continue;
+    if ((i > 0 && torn(i - 1, i - 1)) || torn(i, i + 1))
+      throw InputError(
+          fmt::format("{}: line {} has {} values where the rows beside it have {}; repair it, or "
+                      "say how many lines of preamble there are (preamble_lines).",
+                      file.path().string(), block.line, block.width, header.width));
+  }
+}
+
 /// Sorts the blocks into frames, preamble and what was cut off.
 std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& blocks,
                              const ReadOptions& options, RecordingHeader& header) {
@@ -53,6 +74,7 @@ std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& 
   if (header.height == 0)
     throw InputError(file.path().string() +
                      ": frames of 0 rows were asked for; give the number of rows of a frame.");
+  refuse_uneven_rows(file, blocks, header);
   std::size_t last = blocks.size();  // the last block with a whole frame
   for (std::size_t i = 0; i < blocks.size(); ++i)
     if (blocks[i].width == width && blocks[i].rows >= header.height) last = i;
@@ -91,10 +113,13 @@ bool is_csv(std::string_view first_bytes) {
 Recording open_csv(const std::filesystem::path& path, const ReadOptions& options) {
   const ByteFile file(path);
   CsvDialect dialect;
-  if (!detect_csv_dialect(whole_values(file.beginning(sample_size)), options, dialect))
+  const std::string beginning = file.beginning(sample_size);
+  const std::string_view sample = whole_values(beginning);
+  if (!detect_csv_dialect(sample, options, dialect))
     throw InputError(
         path.string() +
         ": there is no row of numbers in the text; say which separator and decimal sign it has.");
+  check_csv_commas(path, sample, dialect, options);
   RecordingHeader header;
   header.path = path;
   std::string preamble;

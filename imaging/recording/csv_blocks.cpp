@@ -56,24 +56,31 @@ std::vector<CsvBlock> find_csv_blocks(const ByteFile& file, const CsvDialect& di
   std::vector<float> values;
   bool open = false;           // whether the last block may go on
   std::size_t odd_fields = 0;  // of the line before, if it mixes numbers and words
+  CsvWord odd_word;            // its first word
   LineReader reader(file, 0);
   std::string_view line;
-  const auto refuse = [&](std::size_t number) {
-    throw InputError(fmt::format(
-        "{}: line {} has as many fields as the rows of a frame beside it, but one of them is no "
-        "number; repair it, or say how many lines of preamble there are.",
-        file.path().string(), number));
+  const auto refuse = [&](std::size_t number, const CsvWord& word) {
+    constexpr std::size_t shown = 40;
+    const std::string text =
+        word.text.size() > shown ? word.text.substr(0, shown) + "..." : word.text;
+    throw InputError(
+        fmt::format("{}: line {}, column {}: \"{}\" is no number, but the line has as many fields "
+                    "as the rows of a frame beside it; repair it, or say how many lines of "
+                    "preamble there are (preamble_lines).",
+                    file.path().string(), number, word.column, text));
   };
   for (std::size_t number = 1; reader.next(line); ++number) {
     const CsvLine kind = number <= skip ? CsvLine::other : read_csv_line(line, dialect, values);
     if (kind != CsvLine::row) {
-      if (kind == CsvLine::mixed && open && values.size() == blocks.back().width) refuse(number);
-      odd_fields = kind == CsvLine::mixed ? values.size() : 0;
+      const bool mixed = kind == CsvLine::mixed;
+      odd_word = mixed ? first_csv_word(line, dialect) : CsvWord();
+      odd_fields = mixed ? values.size() : 0;
+      if (mixed && open && odd_fields == blocks.back().width) refuse(number, odd_word);
       open = false;
       if (preamble.size() + line.size() < longest_preamble) preamble.append(line).append("\n");
       continue;
     }
-    if (odd_fields == values.size()) refuse(number - 1);
+    if (odd_fields == values.size()) refuse(number - 1, odd_word);
     odd_fields = 0;
     if (!open || blocks.back().width != values.size())
       blocks.push_back({reader.place(), number, 0, values.size()});

@@ -62,6 +62,23 @@ std::size_t field_end(std::string_view line, std::size_t at, char separator) {
   return std::min(line.find(separator, at), line.size());
 }
 
+/// A line without what surrounds its fields: UTF-8's mark, its end, blanks.
+std::string_view bare_line(std::string_view line, char separator) {
+  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return separator == '\t' ? line : trimmed(line);
+}
+
+/// Takes the next field off a bare line. @returns whether there was one.
+bool take_field(std::string_view& line, char separator, std::string_view& field) {
+  if (line.empty()) return false;
+  const std::size_t end = field_end(line, 0, separator);
+  field = line.substr(0, end);
+  line.remove_prefix(std::min(end + 1, line.size()));
+  if (separator == ' ') line.remove_prefix(std::min(line.find_first_not_of(' '), line.size()));
+  return true;
+}
+
 const std::map<std::string, char> named_separators = {
     {"tab", '\t'}, {"space", ' '}, {"comma", ','}, {"semicolon", ';'}};
 
@@ -74,22 +91,27 @@ bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector
 CsvLine read_csv_line(std::string_view line, const CsvDialect& dialect,
                       std::vector<float>& values) {
   values.clear();
-  if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // UTF-8's mark
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  if (dialect.separator != '\t') line = trimmed(line);
+  line = bare_line(line, dialect.separator);
   bool number = false, text = false;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t end = field_end(line, at, dialect.separator);
+  for (std::string_view content; take_field(line, dialect.separator, content);) {
     float value = 0;
-    const Field field = parse_field(line.substr(at, end - at), dialect.decimal, value);
+    const Field field = parse_field(content, dialect.decimal, value);
     number |= field == Field::number;
     text |= field == Field::text;
     values.push_back(value);
-    at = end + 1;
-    if (dialect.separator == ' ') at = std::min(line.find_first_not_of(' ', at), line.size());
   }
   if (!number || values.size() < 2) return CsvLine::other;
   return text ? CsvLine::mixed : CsvLine::row;
+}
+
+CsvWord first_csv_word(std::string_view line, const CsvDialect& dialect) {
+  line = bare_line(line, dialect.separator);
+  float value = 0;
+  std::size_t column = 1;
+  for (std::string_view field; take_field(line, dialect.separator, field); ++column)
+    if (parse_field(field, dialect.decimal, value) == Field::text)
+      return {column, std::string(trimmed(field))};
+  return {};
 }
 
 bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDialect& dialect) {

@@ -23,6 +23,13 @@ enum class CsvLine { row, mixed, other };
 /// NaN. A separator at the end of the line is allowed; with the separator "space" several count as
 /// one.
 CsvLine read_csv_line(std::string_view line, const CsvDialect& dialect, std::vector<float>& values);
+/// A field that is a word, and its column, counted from 1 as a spreadsheet does.
+struct CsvWord {
+  std::size_t column = 0;  ///< 0: there is none
+  std::string text;
+};
+/// The first word of a line.
+CsvWord first_csv_word(std::string_view line, const CsvDialect& dialect);
 /// Whether the line is a row, which `values` then holds.
 bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector<float>& values);
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "imaging/recording/csv_commas.hpp"
 #include "imaging/recording/csv_row.hpp"
 #include "imaging/recording/folder.hpp"
 #include "imaging/recording/formats.hpp"
@@ -40,10 +41,6 @@ TEST(Csv, FindsSeparatorAndDecimalSign) {
 
 TEST(Csv, KeepsWhatTheUserSays) {
   const TestFolder folder;
-  // Without options three columns with a decimal comma look like six.
-  const std::string text = "20,1,20,2,20,3\n21,1,21,2,21,3\n";
-  const auto guessed = open_csv(folder.file("a.csv", text));
-  EXPECT_EQ(guessed.header().width, 6u);
   EXPECT_EQ(read(folder, "1|2|3\n20.1|20.2|20.3\n21.1|21.2|21.3\n",
                  {.separator = "|", .preamble_lines = 1}),
             two_by_three);
@@ -51,6 +48,36 @@ TEST(Csv, KeepsWhatTheUserSays) {
   EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.decimal = "x"}); }), "decimal sign"));
   EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.unit = "mood"}); }), "mood"));
   EXPECT_FLOAT_EQ(open_csv(path, {.unit = "degC"}).frame(0).values[0], 274.15F);
+}
+
+TEST(Csv, AsksWhereACommaMayBeEither) {
+  const TestFolder folder;
+  // Three columns with a decimal comma, or six of whole numbers.
+  const std::string text = "20,1,20,2,20,3\n21,1,21,2,21,3\n";
+  const auto path = folder.file("a.csv", text);
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path); }), "two values or four"));
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.separator = ","}); }), "decimal = \".\""));
+  EXPECT_EQ(open_csv(path, {.decimal = "."}).header().width, 6u);
+  // Split at both, the sentence of the user would be read as six whole numbers.
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.decimal = ","}); }), "in quotes"));
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(path, {.separator = ",", .decimal = ","}); }),
+                   "semicolons or tabs"));
+  EXPECT_TRUE(commas_look_decimal("3,2\n20,05,20,07\n"));
+  for (const char* plain : {"20,21,22,23\n24,25,26,27\n", "007,008,009,010\n", "0,0,0,5,0,0\n",
+                            "20.1,3,20.2,4\n", "20,1,20\n", "1,-5,1,-6\n", "3,2\n", ""})
+    EXPECT_FALSE(commas_look_decimal(plain)) << plain;
+}
+
+TEST(Csv, ReadsWholeNumbersBetweenCommas) {
+  const TestFolder folder;
+  for (const std::size_t width : {4u, 5u, 40u})
+    for (std::size_t i = 0; i < 20; ++i) {
+      const auto picture = synthetic::scene(width, 12, i);
+      std::string text;
+      for (std::size_t k = 0; k < picture.counts.size(); ++k)
+        text += std::to_string(picture.counts[k]) + ((k + 1) % width == 0 ? "\n" : ",");
+      EXPECT_EQ(open_csv(folder.file("a.csv", text)).header().width, width);
+    }
 }
 
 TEST(Csv, PassesOverAPreambleAndReadsTheUnitInIt) {
@@ -122,6 +149,24 @@ TEST(Csv, KeepsWholeFramesAndNamesTheLineThatInterrupts) {
        {"1;2;x;4;5;6\n" + frame, frame + "1;2;x;4;5;6\n", "1;2;3;4;5;6\nFrame\n" + frame}) {
     const auto path = folder.file("c.csv", bad);
     EXPECT_TRUE(says(refusal_of([&] { open_csv(path); }), "repair")) << bad;
+  }
+  const auto word = folder.file("d.csv", frame + "1;2;x y;4;5;6\n");
+  EXPECT_TRUE(says(refusal_of([&] { open_csv(word); }), "line 5, column 3: \"x y\""));
+  // A value less or more, in the only frame, in the first and the last row of one, with its rows
+  // counted; but the end of a file may be missing.
+  const std::string rows = "1;2;3;4;5;6\n1;2;3;4;5;6\n";
+  for (const std::string row : {"1;2;3;4;5\n", "1;2;3;4;5;6;7\n"}) {
+    for (const std::string& bad :
+         {rows + "1;2;3;4;5;6\n" + row + rows, frame + "\n" + row + "1;2;3;4;5;6\n" + rows,
+          frame + "\n" + rows + "1;2;3;4;5;6\n" + row + "\n" + frame}) {
+      const auto path = folder.file("e.csv", bad);
+      EXPECT_TRUE(says(refusal_of([&] { open_csv(path); }), "where the rows beside it have 6"))
+          << bad;
+    }
+    const auto counted = folder.file("f.csv", frame + rows + row + rows);
+    EXPECT_TRUE(says(refusal_of([&] { open_csv(counted, {.frame_rows = 4}); }), "line 7 has"));
+    const auto end = folder.file("g.csv", frame + "\n" + rows + row);
+    EXPECT_EQ(open_csv(end).header().frames_lost, 1u);
   }
 }
 

@@ -30,6 +30,13 @@ void try_in_child(const std::filesystem::path& path, const char* library,
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  // A sanitizer ends a program by itself, with a status of its own.
+  if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
+    throw InputError(
+        fmt::format("{}: the file is damaged so that the {} library breaks off on it (status {}). "
+                    "Copy it again "
+                    "from its source.",
+                    path.string(), library, WEXITSTATUS(status)));
   if (WIFSIGNALED(status) && WTERMSIG(status) != SIGINT && WTERMSIG(status) != SIGTERM)
     throw InputError(
         fmt::format("{}: the file is damaged so that the {} library breaks off on it (signal {}). "

@@ -20,6 +20,10 @@ constexpr std::uint64_t header_size = 128, tag_size = 8;
 constexpr std::uint32_t name_type = 1, dimensions_type = 5, flags_type = 6, variable = 14,
                         compressed_variable = 15;
 constexpr std::uint64_t most_dimensions = 32, longest_name = 4096;
+// The low byte of the flags says what the variable is. Cells, structs and objects hold elements.
+constexpr std::uint32_t cell_class = 1, struct_class = 2, object_class = 3;
+// DEFLATE gains a factor of 1032 at most.
+constexpr std::uint64_t most_gain = 1032;
 
 struct Tag {
   std::uint32_t type = 0;
@@ -42,11 +46,29 @@ Tag read_tag(const ByteFile& file, std::uint64_t at, std::endian order) {
                   file.path().string(), at, what));
 }
 
+/// Refuses cells and structs of more elements than have room in them: matio asks for a pointer to
+/// each before it reads the first. A struct without fields has elements of no length, which are as
+/// many as `fieldless` at most.
+void check_elements(const ByteFile& file, std::endian order, const Mat5Element& element,
+                    std::uint32_t kind, const Tag& dimensions) {
+  constexpr double fieldless = 4096;
+  if (kind != cell_class && kind != struct_class && kind != object_class) return;
+  const std::string sizes = file.bytes(dimensions.content, dimensions.length);
+  double count = 1;
+  for (std::size_t at = 0; at + 4 <= sizes.size(); at += 4)
+    count *= number_at<std::uint32_t>(sizes, at, order);
+  if (kind != cell_class && count <= fieldless) return;
+  if (count * tag_size > static_cast<double>(element.length))
+    refuse(file, element.place,
+           fmt::format("is said to hold {} elements in {} bytes", count, element.length));
+}
+
 /// Flags, dimensions, name and the place of the numbers; nothing for objects that have no such
 /// parts.
 void read_parts(const ByteFile& file, std::endian order, Mat5Element& element) {
   const std::uint64_t end = std::min(file.size(), element.place + element.length);
   std::uint64_t at = element.place;
+  std::uint32_t kind = 0;
   for (const auto expected : {flags_type, dimensions_type, name_type}) {
     if (at > end || end - at < tag_size) refuse(file, element.place, "ends within its description");
     const Tag tag = read_tag(file, at, order);
@@ -57,6 +79,9 @@ void read_parts(const ByteFile& file, std::endian order, Mat5Element& element) {
       refuse(file, element.place,
              fmt::format("has a part of type {} and {} bytes where type {} is expected", tag.type,
                          tag.length, expected));
+    if (expected == flags_type && tag.length >= 4)
+      kind = number_at<std::uint32_t>(file.bytes(tag.content, 4), 0, order) & 0xFF;
+    if (expected == dimensions_type) check_elements(file, order, element, kind, tag);
     if (expected == name_type) element.name = file.bytes(tag.content, tag.length);
     at = tag.next;
   }
@@ -95,6 +120,10 @@ void read_compressed_parts(const ByteFile& file, std::endian order, Mat5Element&
   const Tag tag = read_tag(head, 0, order);
   if (tag.type != variable || tag.content != tag_size)
     refuse(file, element.place, fmt::format("holds type {}, expected 14", tag.type));
+  if (tag.length / most_gain > element.length)
+    refuse(file, element.place,
+           fmt::format("is said to hold {} bytes, which {} compressed ones cannot", tag.length,
+                       element.length));
   Mat5Element inside{tag_size, tag.length, true, "", 0, 0};
   read_parts(head, order, inside);
   element.name = inside.name;
