@@ -127,6 +127,7 @@ void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vect
   };
   slots(liquid_, liquid_slot_);
   slots(wall_, wall_slot_);
+  make_room_for_near();
 }
 
 /// The flow's lists: those of melt and walls, entry by entry, so that sums keep their order.

@@ -8,14 +8,12 @@
 
 namespace meltproof::solver {
 
-void FreeSurfaceFlow::colour_gradients(const std::vector<std::uint32_t>& members) {
+void FreeSurfaceFlow::colour_gradients() {
   const MotionRecord* all = motion_.data();
-  for_each_particle(members.size(), [&](std::size_t member) {
-    const std::uint32_t i = members[member];
+  const auto look = [&](std::uint32_t i, const std::uint32_t* begin, const std::uint32_t* end) {
     const MotionRecord& own = all[i];
     Lane filled = 0, cx = 0, cy = 0, cz = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (const std::uint32_t* j = begin; j < end; j += lane_count) {
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane volume = gather(all, j, &MotionRecord::volume);
       const Lane weight = volume * kernel_.slope(r) / r;
@@ -26,6 +24,14 @@ void FreeSurfaceFlow::colour_gradients(const std::vector<std::uint32_t>& members
     }
     colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
     filled_[i] = sum_lanes(filled) / lattice_sum_;
+  };
+  for_each_particle(wall_.size(), [&](std::size_t member) {
+    const std::uint32_t i = wall_slot_[member];
+    look(i, list_.index.data() + list_.first[i], list_.index.data() + list_.last[i]);
+  });
+  for_each_particle(liquid_.size(), [&](std::size_t member) {
+    look(liquid_slot_[member], near_.index.data() + near_.first[member],
+         near_.index.data() + near_.last[member]);
   });
 }
 
@@ -37,8 +43,8 @@ void FreeSurfaceFlow::density_gradients(const std::vector<Ghost>& ghosts) {
     const std::uint32_t i = liquid_slot_[member];
     const MotionRecord& own = all[i];
     GradientSums sums;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane density = gather(all, j, &MotionRecord::density);
       const Lane factor = where_positive(density, softened_slope(kernel_, r, r2), Lane(0.0));
@@ -82,8 +88,8 @@ void FreeSurfaceFlow::densities(Particles& particles, double dt) {
     const DensityRecord& gradient = gradients[i];
     const double mass = particles.mass[particle], reference = mass / particles.volume[particle];
     Lane compression = 0, diffused = 0, summed = 0, filled = 0, cx = 0, cy = 0, cz = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane ux = own.vx - gather(all, j, &MotionRecord::vx);
       const Lane uy = own.vy - gather(all, j, &MotionRecord::vy);

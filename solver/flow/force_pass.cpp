@@ -91,8 +91,8 @@ void FreeSurfaceFlow::forces(const Particles& particles) {
     const ForceRecord& own = all[i];
     Lane strain = 0, ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
     const Lane own_square = own.volume * own.volume;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane ux = own.vx - gather(all, j, &ForceRecord::vx);
       const Lane uy = own.vy - gather(all, j, &ForceRecord::vy);

@@ -111,6 +111,7 @@ void FreeSurfaceFlow::evaluate(const Particles& particles, const std::vector<Gho
 
 void FreeSurfaceFlow::finish(Particles& particles, const std::vector<Ghost>& ghosts, double dt) {
   write_motion(particles, ghosts);
+  find_near();
   densities(particles, dt);
   evaluate(particles, ghosts);
   for_each_particle(liquid_.size(), [&](std::size_t k) {

@@ -204,8 +204,10 @@ class FreeSurfaceFlow {
   void translate_lists(const std::vector<std::uint32_t>& slot_of, const NeighbourList& list);
   void fit();
   void place_standing(const Particles& particles, const std::vector<Ghost>& ghosts);
+  void make_room_for_near();
+  void find_near();
   void write_motion(const Particles& particles, const std::vector<Ghost>& ghosts);
-  void colour_gradients(const std::vector<std::uint32_t>& members);
+  void colour_gradients();
   void density_gradients(const std::vector<Ghost>& ghosts);
   void densities(Particles& particles, double dt);
   void write_surface(const Particles& particles, const std::vector<Ghost>& ghosts);
@@ -277,6 +279,8 @@ class FreeSurfaceFlow {
   std::vector<std::uint32_t> behind_walls_;
   NeighbourList list_;            // of slots: of the melt and the walls of this rank
   NeighbourList melt_near_wall_;  // of wall_slot_[k], k in place of the slot: liquid only
+  // Of liquid_slot_[k], k in place of the slot: what of its list is within the kernel's support.
+  NeighbourList near_;
   std::vector<std::pair<std::uint32_t, FlowParticle>> arrived_;  // since the last arrange()
   std::vector<MotionRecord> motion_;
   std::vector<DensityRecord> density_gradient_;

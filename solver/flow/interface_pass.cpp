@@ -45,28 +45,39 @@ void FreeSurfaceFlow::leave_disorder_out() {
   const SurfaceRecord* all = surface_.data();
   const double outermost = outermost_depth_ * kernel_.smoothing_length;
   const double near = std::pow(below_outermost * kernel_.smoothing_length, 2);
-  const auto look = [&](std::uint32_t i) {
+  const auto look = [&](std::uint32_t i, const std::uint32_t* begin, const std::uint32_t* end) {
     const SurfaceRecord& own = all[i];
     disorder_[i] = 0;
     if (own.depth <= outermost) {
       return;
     }
-    Lane found = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (const std::uint32_t* j = begin; j < end; j += lane_count) {
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
-      const auto [dx, dy, dz, r2, r] = separation(own, all, j);
-      found +=
-          where_positive(near - r2, where_positive(outermost - depth, depth, Lane(0.0)), Lane(0.0));
+      const auto outer = depth > 0.0 && depth < outermost;
+      if (!any_of(outer)) {
+        continue;
+      }
+      const Lane dx = own.x - gather(all, j, &SurfaceRecord::x);
+      const Lane dy = own.y - gather(all, j, &SurfaceRecord::y);
+      const Lane dz = own.z - gather(all, j, &SurfaceRecord::z);
+      if (any_of(outer && dx * dx + dy * dy + dz * dz < near)) {
+        return;
+      }
     }
-    disorder_[i] = sum_lanes(found) > 0 ? 0 : 1;
+    disorder_[i] = 1;
   };
   compute_and_exchange(
       Halo::metal_near_melt, 1,
       [&](Part part) {
         for_each_of(liquid_parts_, part, liquid_.size(),
-                    [&](std::size_t k) { look(liquid_slot_[k]); });
-        for_each_of(wall_parts_, part, wall_.size(), [&](std::size_t k) { look(wall_slot_[k]); });
+                    [&](std::size_t k) {
+                      look(liquid_slot_[k], near_.index.data() + near_.first[k],
+                           near_.index.data() + near_.last[k]);
+                    });
+        for_each_of(wall_parts_, part, wall_.size(), [&](std::size_t k) {
+          const std::uint32_t i = wall_slot_[k];
+          look(i, list_.index.data() + list_.first[i], list_.index.data() + list_.last[i]);
+        });
       },
       [&](std::uint32_t i, double* out) { *out = disorder_[slot_[i]]; },
       [&](std::uint32_t i, const double* in) { disorder_[slot_[i]] = *in > 0 ? 1 : 0; });
@@ -80,10 +91,10 @@ void FreeSurfaceFlow::leave_disorder_out() {
 
 void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vector<Ghost>& ghosts) {
   write_motion(particles, ghosts);
+  find_near();
   // Walls stand still and melt moves little between two calls, so their normals are kept until the
   // next one.
-  colour_gradients(wall_slot_);
-  colour_gradients(liquid_slot_);
+  colour_gradients();
   halo_.exchange(
       Halo::metal_near_melt, 3,
       [&](std::uint32_t i, double* out) { std::copy_n(colour_[slot_[i]].begin(), 3, out); },
@@ -104,8 +115,8 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
       return;
     }
     GradientSums sums;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane factor = softened_slope(kernel_, r, r2);
       sums.add(factor, own.tension - gather(all, j, &SurfaceRecord::tension), dx, dy, dz);
@@ -127,8 +138,8 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts) {
       return;
     }
     Lane turn = 0, reach = 0, inset = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const Lane depth = gather(all, j, &SurfaceRecord::depth);
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane factor = where_positive(depth, softened_slope(kernel_, r, r2), Lane(0.0)) *
@@ -194,8 +205,8 @@ void FreeSurfaceFlow::curvatures_below() {
       return;
     }
     Lane sum = 0, weight = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane near = kernel_.value(r);
       sum += near * gather(outer_curvature_.data(), j, &CurvatureRecord::curvature);
@@ -227,8 +238,8 @@ void FreeSurfaceFlow::missing_gradients() {
     }
     GradientSums sums;
     Lane spread = 0;
-    for (std::size_t k = list_.first[i]; k < list_.last[i]; k += lane_count) {
-      const std::uint32_t* j = &list_.index[k];
+    for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
+      const std::uint32_t* j = &near_.index[k];
       const auto [dx, dy, dz, r2, r] = separation(own, all, j);
       const Lane slope = softened_slope(kernel_, r, r2);
       const Lane melt = gather(force_.data(), j, &ForceRecord::density);

@@ -47,6 +47,11 @@ inline double where_positive(double test, double value, double other) {
   return result;
 }
 
+/// Whether a comparison holds in any lane.
+[[gnu::always_inline]] inline bool any_of(const Lane::mask_type& test) {
+  return std::experimental::any_of(test);
+}
+
 /// The sum over the lanes, always in the same order.
 inline double sum_lanes(const Lane& value) {
   double sum = 0;
