@@ -94,15 +94,15 @@ void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vect
   }
   list_.void_index = melt_near_wall_.void_index = next++;
   slot_of[list.void_index] = list_.void_index;
-  std::vector<std::uint8_t> behind(list.void_index, 0);
+  std::vector<std::uint8_t> behind(list.void_index + std::size_t{1}, 0);
   for (const std::uint32_t i : wall_) {
     for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      if (slot_of[list.index[k]] == nowhere) {
-        behind[list.index[k]] = 1;
-      }
+      // Written always: no branch to be guessed wrong.
+      const std::uint32_t j = list.index[k];
+      behind[j] |= slot_of[j] == nowhere ? 1 : 0;
     }
   }
-  for (std::uint32_t j = 0; j < behind.size(); ++j) {
+  for (std::uint32_t j = 0; j < list.void_index; ++j) {
     if (behind[j] == 0) {
       continue;
     }
@@ -154,28 +154,31 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
                    list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]), slot);
   });
   // A wall listens to the melt only, which is a small part of its list.
-  const std::size_t images = particle_.size() + near_ghosts_.size();
-  std::vector<std::uint8_t> is_melt(images, 0);
+  std::vector<std::uint8_t> is_melt(
+      list_.void_index + std::size_t{1} + behind_walls_.size(), 0);
   for (std::size_t s = 0; s < particle_.size(); ++s) {
     is_melt[s] = role_[particle_[s]] == 1 ? 1 : 0;
   }
   melt_near_wall_.first.clear();
   melt_near_wall_.last.clear();
-  melt_near_wall_.index.clear();
+  std::vector<std::uint32_t>& melt = melt_near_wall_.index;
+  melt.clear();
   for (const std::uint32_t i : wall_) {
     const std::uint32_t s = slot_of[i];
-    const std::size_t begin = melt_near_wall_.index.size();
+    const std::size_t begin = melt.size();
     melt_near_wall_.first.push_back(list_place(begin));
+    // Written always and counted if it belongs there: no branch to be guessed wrong.
+    melt.resize(begin + list_.last[s] - list_.first[s] + 1);
+    std::size_t at = begin;
     for (std::size_t k = list_.first[s]; k < list_.last[s]; ++k) {
-      const std::uint32_t j = list_.index[k];
-      if (j < images && is_melt[j] != 0) {
-        melt_near_wall_.index.push_back(j);
-      }
+      melt[at] = list_.index[k];
+      at += is_melt[list_.index[k]];
     }
-    while ((melt_near_wall_.index.size() - begin) % lane_count != 0) {
-      melt_near_wall_.index.push_back(list_.void_index);
+    melt.resize(at);
+    while ((melt.size() - begin) % lane_count != 0) {
+      melt.push_back(list_.void_index);
     }
-    melt_near_wall_.last.push_back(list_place(melt_near_wall_.index.size()));
+    melt_near_wall_.last.push_back(list_place(melt.size()));
   }
 }
 

@@ -80,7 +80,6 @@ void FreeSurfaceFlow::forces(const Particles& particles) {
   const bool repel = settings_.cure == ClumpingCure::repulsion && settings_.repulsion > 0;
   const double over_onset = 1 / kernel_.value(settings_.repulsion_distance * spacing_);
   const bool transport = settings_.cure == ClumpingCure::transport;
-  const bool shift = transport || settings_.shifting > 0;
   const double shifting = settings_.shifting * settings_.sound_speed * kernel_.smoothing_length;
   // Of c^2: beyond some 2 c^2 the stiffest disorder overshoots within one acoustic step.
   const double stiffest = 0.2 * settings_.sound_speed * settings_.sound_speed;
@@ -89,6 +88,9 @@ void FreeSurfaceFlow::forces(const Particles& particles) {
   for_each_particle(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const ForceRecord& own = all[i];
+    const Vector& out = normal_[i];
+    const bool interior = out[0] == 0 && out[1] == 0 && out[2] == 0;
+    const bool shift = transport || (settings_.shifting > 0 && interior);
     Lane strain = 0, ax = 0, ay = 0, az = 0, sx = 0, sy = 0, sz = 0;
     const Lane own_square = own.volume * own.volume;
     for (std::size_t k = near_.first[member]; k < near_.last[member]; k += lane_count) {
@@ -132,9 +134,8 @@ void FreeSurfaceFlow::forces(const Particles& particles) {
     const double mass = particles.mass[liquid_[member]];
     Vector& a = acceleration_[i];
     a = {sum_lanes(ax) / mass, sum_lanes(ay) / mass, sum_lanes(az) / mass};
+    shift_[i] = {};
     if (shift) {
-      const Vector& out = normal_[i];
-      const bool interior = out[0] == 0 && out[1] == 0 && out[2] == 0;
       const double background = std::max(
           transport ? std::min(10 * std::abs(own.pressure), settings_.transport_pressure) : 0,
           interior ? own.density * std::min(shifting * std::sqrt(sum_lanes(strain)), stiffest) : 0);

@@ -10,8 +10,13 @@
 #include <cstdint>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include <experimental/simd>
+
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+#include <immintrin.h>
+#endif
 
 namespace meltproof::solver {
 
@@ -66,6 +71,48 @@ template <class Record>
 [[gnu::always_inline]] inline Lane gather(const Record* records, const std::uint32_t* index,
                                           double Record::*field) {
   return Lane([&](auto lane) { return records[index[lane]].*field; });
+}
+
+/// Coordinates apart, with room behind the last one: as candidates_within() reads them.
+struct Coordinates {
+  std::vector<double> x, y, z;
+};
+
+/// **Of n candidates, in their order, those nearer to a point than the larger of two limits**: writes
+/// their `index` to `out` and returns how many.
+/// @param at x, y, z, m; @param own_limit, limit of the point and of each candidate, m2; @param self
+/// an index that is left out; @param out with room for n and one pack of 8 more.
+inline std::size_t candidates_within(const std::array<double, 3>& at, double own_limit,
+                                     const Coordinates& place, const double* limit,
+                                     const std::uint32_t* index, std::size_t n, std::uint32_t self,
+                                     std::uint32_t* out) {
+  std::size_t end = 0, k = 0;
+#if defined(__AVX512F__) && defined(__AVX512VL__)
+  const __m512d ax = _mm512_set1_pd(at[0]), ay = _mm512_set1_pd(at[1]), az = _mm512_set1_pd(at[2]);
+  const __m512d own = _mm512_set1_pd(own_limit);
+  const __m256i no = _mm256_set1_epi32(static_cast<int>(self));
+  for (; k + 8 <= n; k += 8) {
+    const __m512d dx = _mm512_sub_pd(ax, _mm512_loadu_pd(place.x.data() + k));
+    const __m512d dy = _mm512_sub_pd(ay, _mm512_loadu_pd(place.y.data() + k));
+    const __m512d dz = _mm512_sub_pd(az, _mm512_loadu_pd(place.z.data() + k));
+    const __m512d squared = _mm512_add_pd(
+        _mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
+    const __m256i who = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index + k));
+    const __mmask8 near = _mm512_cmp_pd_mask(
+        squared, _mm512_max_pd(own, _mm512_loadu_pd(limit + k)), _CMP_LT_OQ);
+    const __mmask8 keep = near & _mm256_cmpneq_epi32_mask(who, no);
+    // Pushed together in a register: the processor's own compressing store is slow.
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + end), _mm256_maskz_compress_epi32(keep, who));
+    end += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(keep)));
+  }
+#endif
+  for (; k < n; ++k) {
+    const double dx = at[0] - place.x[k], dy = at[1] - place.y[k], dz = at[2] - place.z[k];
+    // Written always and counted if it belongs there: no branch to be guessed wrong.
+    out[end] = index[k];
+    end += dx * dx + dy * dy + dz * dz < larger(own_limit, limit[k]) && index[k] != self ? 1U : 0U;
+  }
+  return end;
 }
 
 namespace lanes_detail {

@@ -42,7 +42,8 @@ constexpr std::size_t block = 16384;  // lists that are made at a time
 /// out sorted without a sort of each; coordinates apart, so that distances are taken in lanes.
 struct Candidates {
   std::vector<std::uint32_t> index;
-  std::vector<double> x, y, z, limit, squared;
+  Coordinates place;
+  std::vector<double> limit;
 
   /// Those near the box around all of `members`: a quarter to a half fewer than all around the
   /// cell.
@@ -69,14 +70,14 @@ struct Candidates {
     });
     order.sort(index);
     const std::size_t n = index.size();
-    for (auto* field : {&x, &y, &z, &limit, &squared}) {
+    for (auto* field : {&place.x, &place.y, &place.z, &limit}) {
       field->resize(n);
     }
     for (std::size_t k = 0; k < n; ++k) {
       const Vector& at = points[index[k]];
-      x[k] = at[0];
-      y[k] = at[1];
-      z[k] = at[2];
+      place.x[k] = at[0];
+      place.y[k] = at[1];
+      place.z[k] = at[2];
       limit[k] = limits[index[k]];
     }
   }
@@ -84,19 +85,10 @@ struct Candidates {
   /// Appends the neighbours of particle i: nearer than the larger of the two limits.
   void append(std::uint32_t i, const Vector& at, double own_limit,
               std::vector<std::uint32_t>& out) {
-    const std::size_t n = index.size(), begin = out.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      const double dx = at[0] - x[k], dy = at[1] - y[k], dz = at[2] - z[k];
-      squared[k] = dx * dx + dy * dy + dz * dz;
-    }
-    // Written always and counted if it belongs there: no branch to be guessed wrong.
-    out.resize(begin + n + 1);
-    std::size_t end = begin;
-    for (std::size_t k = 0; k < n; ++k) {
-      out[end] = index[k];
-      end += squared[k] < std::max(own_limit, limit[k]) && index[k] != i ? 1U : 0U;
-    }
-    out.resize(end);
+    const std::size_t begin = out.size();
+    out.resize(begin + index.size() + 8);
+    out.resize(begin + candidates_within(at, own_limit, place, limit.data(), index.data(),
+                                         index.size(), i, out.data() + begin));
   }
 };
 

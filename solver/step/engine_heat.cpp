@@ -109,10 +109,9 @@ void Engine::find_boundary() {
       const std::uint32_t j = list.index[k];
       if (j != list.void_index) {
         const std::uint32_t source = j < n ? j : ghosts_[j - n].source;
-        if (fast_[source] == 0) {
+        // Fast ones among them, too, and left out below: no branch to be guessed wrong.
 #pragma omp atomic write
-          beside[source] = 1;
-        }
+        beside[source] = 1;
       }
     }
   });
@@ -125,7 +124,7 @@ void Engine::find_boundary() {
       });
   boundary_.clear();
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (beside[i] != 0 && particles_.home[i] == Home::here) {
+    if (beside[i] != 0 && fast_[i] == 0 && particles_.home[i] == Home::here) {
       boundary_.push_back(i);
     }
   }
