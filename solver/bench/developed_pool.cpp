@@ -52,9 +52,9 @@ DevelopedPool develop_pool(const TrackCase& track, double until) {
         fmt::format("nothing is liquid at {:g} us: there is no pool to time; take a later --until",
                     1e6 * until));
   }
-  const NeighbourList& list = engine.neighbours();
+  const PackedLists& list = engine.neighbours();
   pool.neighbours = list.mean_neighbours();
-  pool.list_bytes = static_cast<double>(list.index.size() * sizeof(list.index[0])) /
+  pool.list_bytes = static_cast<double>(list.code.size() * sizeof(list.code[0])) /
                     static_cast<double>(particles);
   return pool;
 }

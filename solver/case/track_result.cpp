@@ -62,21 +62,22 @@ double pool_isotherm(const TrackCase& t, const Mixture& mixture) {
 /// Whether this rank has any.
 bool melt_left_here(const Engine& engine) {
   const Particles& p = engine.particles();
-  const NeighbourList& list = engine.neighbours();
+  const PackedLists& list = engine.neighbours();
   const double touch = 2.25 * p.spacing * p.spacing;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const bool molten =
         p.home[i] == Home::here &&
         (engine.model().flow ? p.phase[i] == Phase::liquid : p.liquid_fraction[i] >= 1);
-    for (std::size_t k = list.first[i]; molten && k < list.last[i]; ++k) {
-      const std::uint32_t j = list.index[k];
-      if (j < p.size() && p.phase[j] == Phase::solid) {
-        const auto &a = p.position[i], &b = p.position[j];
-        const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-        if (x * x + y * y + z * z < touch) {
-          return true;
-        }
+    const auto touches = [&](std::uint32_t j) {
+      if (j >= p.size() || p.phase[j] != Phase::solid) {
+        return false;
       }
+      const auto &a = p.position[i], &b = p.position[j];
+      const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+      return x * x + y * y + z * z < touch;
+    };
+    if (molten && list.any(i, touches)) {
+      return true;
     }
   }
   return false;

@@ -9,7 +9,7 @@ namespace meltproof::solver {
 /// Who is melt and who is its wall. A wall knows it from the melt's lists, those of other ranks
 /// included: who finds that its melt touches a copy tells the owner, who tells everybody.
 void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<Ghost>& ghosts,
-                                 const NeighbourList& list) {
+                                 const PackedLists& list) {
   const std::size_t n = particles.size();
   role_.assign(n, 0);
   for (auto* members : {&liquid_, &wall_, &liquid_copies_, &wall_copies_}) {
@@ -22,11 +22,7 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
     }
   }
   for (const std::uint32_t i : liquid_) {
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      const std::uint32_t j = list.index[k];
-      if (j == list.void_index) {
-        continue;
-      }
+    list.each(i, [&](std::uint32_t j) {
       const std::uint32_t source = j < n ? j : ghosts[j - n].source;
       if (role_[source] == 0 && particles.phase[source] == Phase::solid) {
         role_[source] = 2;
@@ -34,7 +30,7 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
           wall_.push_back(source);
         }
       }
-    }
+    });
   }
   if (!halo_.empty()) {
     halo_.give_back(
@@ -72,7 +68,7 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
 /// Slots in the order of the particles: melt and walls, images of them, the void, and behind it
 /// whatever else walls have in reach.
 void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
-                                     const NeighbourList& list) {
+                                     const PackedLists& list) {
   const std::size_t n = particles.size();
   particle_.clear();
   near_ghosts_.clear();
@@ -96,11 +92,8 @@ void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vect
   slot_of[list.void_index] = list_.void_index;
   std::vector<std::uint8_t> behind(list.void_index + std::size_t{1}, 0);
   for (const std::uint32_t i : wall_) {
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      // Written always: no branch to be guessed wrong.
-      const std::uint32_t j = list.index[k];
-      behind[j] |= slot_of[j] == nowhere ? 1 : 0;
-    }
+    // Written always: no branch to be guessed wrong.
+    list.each(i, [&](std::uint32_t j) { behind[j] |= slot_of[j] == nowhere ? 1 : 0; });
   }
   for (std::uint32_t j = 0; j < list.void_index; ++j) {
     if (behind[j] == 0) {
@@ -133,7 +126,7 @@ void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vect
 /// The flow's lists: those of melt and walls, entry by entry, so that sums keep their order.
 /// @param slot_of of particles, images and the void.
 void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
-                                      const NeighbourList& list) {
+                                      const PackedLists& list) {
   list_.reach = list.reach;
   list_.first.assign(particle_.size(), 0);
   list_.last.assign(particle_.size(), 0);
@@ -141,7 +134,8 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
   for (std::size_t s = 0; s < particle_.size(); ++s) {
     const std::uint32_t i = particle_[s];
     list_.first[s] = list_place(end);
-    end += list.last[i] - list.first[i];  // nothing of copies
+    const std::size_t count = list.count(i);  // nothing of copies
+    end += (count + lane_count - 1) / lane_count * lane_count;
     list_.last[s] = list_place(end);
   }
   list_.index.resize(end);
@@ -149,8 +143,9 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
     return slot_of[j] == nowhere ? list_.void_index : slot_of[j];
   };
   for_each_particle(particle_.size(), [&](std::size_t s) {
-    const auto from = list.index.begin() + static_cast<std::ptrdiff_t>(list.first[particle_[s]]);
-    std::transform(from, from + static_cast<std::ptrdiff_t>(list_.last[s] - list_.first[s]),
+    thread_local ListBuffer buffer;
+    const auto entries = list.of(particle_[s], buffer);
+    std::transform(entries.begin(), entries.end(),
                    list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]), slot);
   });
   // A wall listens to the melt only, which is a small part of its list.
@@ -208,7 +203,7 @@ void FreeSurfaceFlow::forget() {
 }
 
 void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              const NeighbourList& list) {
+                              const PackedLists& list) {
   // What is known of those who were there, by particle.
   std::vector<std::pair<std::uint32_t, FlowParticle>> known;
   for (std::uint32_t i = 0; i < slot_.size(); ++i) {

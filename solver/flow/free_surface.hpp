@@ -13,7 +13,7 @@
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/loops.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/packed_lists.hpp"
 #include "solver/terms/continuity.hpp"
 #include "solver/terms/interface.hpp"
 #include "solver/terms/pressure.hpp"
@@ -113,7 +113,7 @@ class FreeSurfaceFlow {
   /// To be called when phases or lists have changed: finds liquid and wall particles. What is known
   /// of those that were there before stays.
   void arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
-               const NeighbourList& list);
+               const PackedLists& list);
   /// To be called when indices change: nothing is known any more of anybody, until set_particle()
   /// or set_properties() and evaluate().
   void forget();
@@ -198,10 +198,10 @@ class FreeSurfaceFlow {
   }
 
   void find_roles(const Particles& particles, const std::vector<Ghost>& ghosts,
-                  const NeighbourList& list);
+                  const PackedLists& list);
   void hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
-                      const NeighbourList& list);
-  void translate_lists(const std::vector<std::uint32_t>& slot_of, const NeighbourList& list);
+                      const PackedLists& list);
+  void translate_lists(const std::vector<std::uint32_t>& slot_of, const PackedLists& list);
   void fit();
   void place_standing(const Particles& particles, const std::vector<Ghost>& ghosts);
   void make_room_for_near();

@@ -36,12 +36,13 @@ void ListOrder::sort(std::vector<std::uint32_t>& indices) const {
 
 namespace {
 
-constexpr std::size_t block = 16384;  // lists that are made at a time
+// Lists that are made at a time: until they are joined they stand in memory twice.
+constexpr std::size_t block = 8192;
 
 /// Everybody who may be a neighbour of the members of one cell, in order, so that the lists come
 /// out sorted without a sort of each; coordinates apart, so that distances are taken in lanes.
 struct Candidates {
-  std::vector<std::uint32_t> index;
+  std::vector<std::uint32_t> index, found;
   Coordinates place;
   std::vector<double> limit;
 
@@ -84,16 +85,16 @@ struct Candidates {
 
   /// Appends the neighbours of particle i: nearer than the larger of the two limits.
   void append(std::uint32_t i, const Vector& at, double own_limit,
-              std::vector<std::uint32_t>& out) {
-    const std::size_t begin = out.size();
-    out.resize(begin + index.size() + 8);
-    out.resize(begin + candidates_within(at, own_limit, place, limit.data(), index.data(),
-                                         index.size(), i, out.data() + begin));
+              std::vector<std::uint16_t>& code) {
+    found.resize(std::max(found.size(), index.size() + 8));
+    const std::size_t n = candidates_within(at, own_limit, place, limit.data(), index.data(),
+                                            index.size(), i, found.data());
+    append_packed({found.data(), n}, code);
   }
 };
 
-/// The lists of a block of members, appended to list.index.
-void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
+/// The lists of a block of members, appended to list.code.
+void append_block(PackedLists& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
                   const ListLimits& limits) {
   // Members by cell, in their order within each.
@@ -113,7 +114,7 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
   }
   begins.push_back(static_cast<std::uint32_t>(sorted.size()));
   const std::size_t cells = begins.size() - 1;
-  std::vector<std::vector<std::uint32_t>> part(cells);
+  std::vector<std::vector<std::uint16_t>> part(cells);
 #pragma omp parallel
   {
     Candidates candidates;
@@ -126,9 +127,6 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
       for (const std::uint32_t i : of_cell) {
         const std::size_t begin = out.size();
         candidates.append(i, points[i], limits[i], out);
-        while ((out.size() - begin) % lane_count != 0) {
-          out.push_back(list.void_index);
-        }
         list.first[i] = static_cast<ListPlace>(begin);  // within the cell, for now
         list.last[i] = static_cast<ListPlace>(out.size());
       }
@@ -141,7 +139,7 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
       cell_of[sorted[m]] = c;
     }
   }
-  std::size_t end = list.index.size();
+  std::size_t end = list.code.size();
   std::vector<std::size_t> within(members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
     const std::uint32_t i = members[m];
@@ -151,33 +149,33 @@ void append_block(NeighbourList& list, const CellGrid& grid, const ListOrder& or
     end += length;
     list.last[i] = list_place(end);
   }
-  if (end > list.index.capacity()) {
+  if (end > list.code.capacity()) {
     // Twice as much would be memory that is never used.
-    list.index.reserve(end + end / 16);
+    list.code.reserve(end + end / 16);
   }
-  list.index.resize(end);
+  list.code.resize(end);
   for_each_particle(members.size(), [&](std::size_t m) {
     const std::uint32_t i = members[m];
     const auto from = part[cell_of[m]].begin() + static_cast<std::ptrdiff_t>(within[m]);
     std::copy(from, from + static_cast<std::ptrdiff_t>(list.last[i] - list.first[i]),
-              list.index.begin() + static_cast<std::ptrdiff_t>(list.first[i]));
+              list.code.begin() + static_cast<std::ptrdiff_t>(list.first[i]));
   });
 }
 
 }  // namespace
 
-void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
+void append_lists(PackedLists& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
                   const ListLimits& limits) {
-  const std::size_t before = list.index.size();
+  const std::size_t before = list.code.size();
   for (std::size_t begin = 0; begin < members.size(); begin += block) {
     append_block(list, grid, order, points,
                  members.subspan(begin, std::min(block, members.size() - begin)), limits);
     if (begin == 0 && members.size() > block) {
       // All at once rather than bit by bit, which copies what there is; what is not used of it
       // stays with the system.
-      const std::size_t each = (list.index.size() - before) / block + lane_count;
-      list.index.reserve(before + members.size() * (each + each / 4));
+      const std::size_t each = (list.code.size() - before) / block + 16;
+      list.code.reserve(before + members.size() * (each + each / 4));
     }
   }
 }

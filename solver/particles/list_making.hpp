@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/particles/cell_grid.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/packed_lists.hpp"
 
 namespace meltproof::solver {
 
@@ -31,10 +31,10 @@ struct ListLimits {
   double operator[](std::size_t i) const { return moving.empty() || moving[i] == 0 ? near : far; }
 };
 
-/// Appends the lists of `members` to list.index in their order and sets their first and last. Made
+/// Appends the lists of `members` to list.code in their order and sets their first and last. Made
 /// block by block: beside the lists themselves there is only a block of them in memory.
 /// @param grid of all points that may be neighbours, cells as large as the longest reach.
-void append_lists(NeighbourList& list, const CellGrid& grid, const ListOrder& order,
+void append_lists(PackedLists& list, const CellGrid& grid, const ListOrder& order,
                   const Points& points, std::span<const std::uint32_t> members,
                   const ListLimits& limits);
 

@@ -9,7 +9,8 @@
 
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/lanes.hpp"
+#include "solver/particles/moving_neighbours.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -172,6 +173,33 @@ TEST(Neighbours, ALatticeHas92WithinThreeSpacings) {
   EXPECT_EQ(list.mean_neighbours(), 92);
 }
 
+TEST(PackedLists, GiveBackWhatWasPackedInItsOrder) {
+  // Far apart, falling, the same distance twice, the ends of the range, and nothing at all.
+  const std::vector<std::vector<std::uint32_t>> lists = {
+      {5, 6, 9, 70000, 70001, 3, 65538, 65539}, {}, {0, 65535, 65536, 4294967294U}, {7}};
+  PackedLists all;
+  all.void_index = 4294967295U;
+  for (const auto& list : lists) {
+    all.first.push_back(list_place(all.code.size()));
+    append_packed(list, all.code);
+    all.last.push_back(list_place(all.code.size()));
+  }
+  ListBuffer buffer;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    std::vector<std::uint32_t> visited;
+    all.each(i, [&](std::uint32_t j) { visited.push_back(j); });
+    EXPECT_EQ(visited, lists[i]);
+    EXPECT_EQ(all.count(i), lists[i].size());
+    const auto padded = all.of(i, buffer);
+    EXPECT_EQ(padded.size() % lane_count, 0U);
+    EXPECT_LT(padded.size(), lists[i].size() + lane_count);
+    for (std::size_t k = 0; k < padded.size(); ++k) {
+      EXPECT_EQ(padded[k], k < lists[i].size() ? lists[i][k] : all.void_index);
+    }
+  }
+  EXPECT_EQ(all.mean_neighbours(), 13.0 / 4);
+}
+
 TEST(MovingNeighbours, ListsStayRightWhileTheFastestTwoMoveByLessThanTheSkin) {
   Particles particles = random_particles(900, 10.0, 4);
   std::mt19937 random(5);
@@ -190,11 +218,7 @@ TEST(MovingNeighbours, ListsStayRightWhileTheFastestTwoMoveByLessThanTheSkin) {
     }
     for (std::size_t i = 0; i < particles.size(); ++i) {
       std::vector<bool> listed(particles.size(), false);
-      for (std::size_t k = lists.list().first[i]; k < lists.list().last[i]; ++k) {
-        if (lists.list().index[k] != lists.list().void_index) {
-          listed[lists.list().index[k]] = true;
-        }
-      }
+      lists.list().each(i, [&](std::uint32_t j) { listed[j] = true; });
       for (std::size_t j = 0; j < particles.size(); ++j) {
         const auto &a = particles.position[i], &b = particles.position[j];
         const double distance = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

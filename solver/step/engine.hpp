@@ -15,7 +15,7 @@
 #include "solver/parallel/halo.hpp"
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/moving_neighbours.hpp"
 #include "solver/step/engine_state.hpp"
 #include "solver/step/time_step.hpp"
 #include "solver/step/traveller.hpp"
@@ -100,7 +100,7 @@ class Engine {
   const Halo& halo() const { return *halo_; }
   const Mixture& mixture() const { return mixture_; }
   const Model& model() const { return model_; }
-  const NeighbourList& neighbours() const { return neighbours_.list(); }
+  const PackedLists& neighbours() const { return neighbours_.list(); }
   const StepLimits& limits() const { return limits_; }
   const EnergyLedger& ledger() const { return ledger_; }
   const QuinticSpline& kernel() const { return kernel_; }

@@ -25,7 +25,7 @@ constexpr double slow_change = 5e3;
 /// temperatures, and energy stays exact.
 /// @param longest of a round, s.
 void Engine::exchange_heat(double dt, double longest) {
-  const NeighbourList& list = neighbours_.list();
+  const PackedLists& list = neighbours_.list();
   bool opened = false;
   if (!round_open_) {
     find_awake(heat_records_, list, heat_active_);
@@ -94,7 +94,7 @@ void Engine::open_round(double longest) {
 
 /// The fast particles of this rank, into heat_active_, and the slow ones beside fast ones.
 void Engine::find_boundary() {
-  const NeighbourList& list = neighbours_.list();
+  const PackedLists& list = neighbours_.list();
   const std::size_t n = particles_.size();
   std::vector<std::uint8_t> beside(n, 0);
   heat_active_.clear();
@@ -104,16 +104,12 @@ void Engine::find_boundary() {
     }
   }
   for_each_particle(heat_active_.size(), [&](std::size_t a) {
-    const std::uint32_t i = heat_active_[a];
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      const std::uint32_t j = list.index[k];
-      if (j != list.void_index) {
-        const std::uint32_t source = j < n ? j : ghosts_[j - n].source;
-        // Fast ones among them, too, and left out below: no branch to be guessed wrong.
+    list.each(heat_active_[a], [&](std::uint32_t j) {
+      const std::uint32_t source = j < n ? j : ghosts_[j - n].source;
+      // Fast ones among them, too, and left out below: no branch to be guessed wrong.
 #pragma omp atomic write
-        beside[source] = 1;
-      }
-    }
+      beside[source] = 1;
+    });
   });
   halo_->give_back(
       Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = beside[i]; },

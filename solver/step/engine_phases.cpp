@@ -7,7 +7,7 @@ namespace meltproof::solver {
 /// Melts and freezes; takes out what left the domain. @returns whether any phase changed.
 bool Engine::change_phases() {
   const std::size_t n = particles_.size();
-  const NeighbourList& list = neighbours_.list();
+  const PackedLists& list = neighbours_.list();
   const double touch = 2.25 * particles_.spacing * particles_.spacing;
   std::vector<std::uint32_t> freezing;
   bool changed = false;
@@ -30,8 +30,7 @@ bool Engine::change_phases() {
   std::vector<std::uint8_t> touches(freezing.size(), 0);
   for (std::size_t f = 0; f < freezing.size(); ++f) {
     const Vector& at = particles_.position[freezing[f]];
-    for (std::size_t k = list.first[freezing[f]]; k < list.last[freezing[f]]; ++k) {
-      const std::uint32_t j = list.index[k];
+    list.each(freezing[f], [&](std::uint32_t j) {
       // A copy of what melts in this step is told of it only afterwards.
       const bool melts =
           j < n && particles_.home[j] == Home::elsewhere && particles_.liquid_fraction[j] >= 1;
@@ -40,7 +39,7 @@ bool Engine::change_phases() {
         const double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
         touches[f] = touches[f] != 0 || x * x + y * y + z * z < touch ? 1 : 0;
       }
-    }
+    });
   }
   for (std::size_t f = 0; f < freezing.size(); ++f) {
     if (touches[f] != 0) {

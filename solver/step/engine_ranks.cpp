@@ -237,21 +237,20 @@ std::vector<Traveller> Engine::gather(const std::vector<std::uint8_t>& chosen,
 }
 
 Particles Engine::collect(const std::vector<std::uint8_t>& chosen, double touch) const {
-  const NeighbourList& list = neighbours_.list();
+  const PackedLists& list = neighbours_.list();
   std::vector<std::uint8_t> wanted = chosen;
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (chosen[i] == 0 || particles_.home[i] != Home::here) {
       continue;
     }
     const Vector& a = particles_.position[i];
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      const std::uint32_t j = list.index[k];
+    list.each(i, [&](std::uint32_t j) {
       if (j < particles_.size() && wanted[j] == 0) {
         const Vector& b = particles_.position[j];
         const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
         wanted[j] = x * x + y * y + z * z < touch * touch ? 1 : 0;
       }
-    }
+    });
   }
   // Who finds that a copy is wanted tells the owner.
   halo_->give_back(

@@ -114,13 +114,11 @@ void Engine::note_phase_times(const Crossing& c) {
       -change / c.size / mixture_.specific_heat(liquidus + 1e-6, concentration);
   InterfaceSums sums;
   const HeatRecord& own = heat_records_[i];
-  const NeighbourList& list = neighbours_.list();
-  for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-    const std::uint32_t j = list.index[k];
+  neighbours_.list().each(i, [&](std::uint32_t j) {
     const HeatRecord& other = heat_records_[j];
     const double x = own.x - other.x, y = own.y - other.y, z = own.z - other.z;
-    if (j == list.void_index || other.volume == 0) {
-      continue;
+    if (other.volume == 0) {
+      return;
     }
     const double factor = kernel_.gradient_factor(x * x + y * y + z * z);
     const double step = factor * (own.temperature - other.temperature);
@@ -133,7 +131,7 @@ void Engine::note_phase_times(const Crossing& c) {
     sums.moment[3] += factor * x * y;
     sums.moment[4] += factor * x * z;
     sums.moment[5] += factor * y * z;
-  }
+  });
   const Vector gradient = surface_gradient(sums, {});
   particles_.freeze_gradient[i] = std::hypot(gradient[0], gradient[1], gradient[2]);
 }

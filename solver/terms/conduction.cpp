@@ -78,7 +78,7 @@ class AwakeCells {
 
 }  // namespace
 
-void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void find_awake(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                 std::vector<std::uint32_t>& active) {
   const std::size_t n = neighbours.last.size();
   std::vector<std::uint8_t> involved(n, 0);
@@ -91,12 +91,8 @@ void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& nei
     if (!cells.near(records[i])) {
       return;
     }
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; ++k) {
-      if (records[neighbours.index[k]].awake > 0) {
-        involved[i] = 1;
-        return;
-      }
-    }
+    involved[i] =
+        neighbours.any(i, [&](std::uint32_t j) { return records[j].awake > 0; }) ? 1 : 0;
   });
   active.clear();
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -123,7 +119,7 @@ namespace {
 
 }  // namespace
 
-void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
              std::vector<double>& power) {
   const HeatRecord* all = records.data();
@@ -131,24 +127,28 @@ void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighb
   for_each_particle(active.size(), [&](std::size_t member) {
     const std::uint32_t i = active[member];
     const HeatRecord own = all[i];
+    thread_local ListBuffer buffer;
+    const auto list = neighbours.of(i, buffer);
     Lane sum = 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
-      sum += exchange(own, all, &neighbours.index[k], kernel);
+    for (std::size_t k = 0; k < list.size(); k += lane_count) {
+      sum += exchange(own, all, &list[k], kernel);
     }
     power[i] = sum_lanes(sum);
   });
 }
 
-void conduct_apart(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                    const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
                    std::vector<double>& from_fast, std::vector<double>* from_slow) {
   const HeatRecord* all = records.data();
   for_each_particle(members.size(), [&](std::size_t member) {
     const std::uint32_t i = members[member];
     const HeatRecord own = all[i];
+    thread_local ListBuffer buffer;
+    const auto list = neighbours.of(i, buffer);
     Lane fast = 0, slow = 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
-      const std::uint32_t* j = &neighbours.index[k];
+    for (std::size_t k = 0; k < list.size(); k += lane_count) {
+      const std::uint32_t* j = &list[k];
       const Lane exchanged = exchange(own, all, j, kernel);
       const Lane other = gather(all, j, &HeatRecord::fast);
       fast += where_positive(other, exchanged, Lane(0.0));
@@ -161,7 +161,7 @@ void conduct_apart(const std::vector<HeatRecord>& records, const NeighbourList& 
   });
 }
 
-void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, std::vector<double>& power) {
   std::vector<std::uint32_t> everyone(power.size());
   std::iota(everyone.begin(), everyone.end(), 0U);

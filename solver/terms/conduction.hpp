@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/particles/kernel.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/packed_lists.hpp"
 
 namespace meltproof::solver {
 
@@ -31,22 +31,22 @@ struct alignas(64) HeatRecord {
 
 /// The particles that exchange heat: those awake and the neighbours of those, in increasing order.
 /// A pair counts if either is awake, so what one gets the other gives, and energy stays exact.
-void find_awake(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void find_awake(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                 std::vector<std::uint32_t>& active);
 
 /// Conducted power per volume, W m-3, of the particles in `active`; zero for the others.
 /// @param records particles, then ghosts, then the void; @param power size n, overwritten.
-void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
              std::vector<double>& power);
 /// What conduct() finds of slow particles beside fast ones, apart: the power from their fast
 /// neighbours into `from_fast`, that from the slow ones into `from_slow` unless it is null, W m-3.
 /// Only entries of `members` are written.
-void conduct_apart(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                    const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
                    std::vector<double>& from_fast, std::vector<double>* from_slow);
 /// The same for every particle.
-void conduct(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, std::vector<double>& power);
 
 }  // namespace meltproof::solver

@@ -7,7 +7,7 @@
 
 namespace meltproof::solver {
 
-void diffuse(const SpeciesRecords& all, const NeighbourList& neighbours,
+void diffuse(const SpeciesRecords& all, const PackedLists& neighbours,
              const QuinticSpline& kernel, SpeciesFactor factor,
              const std::vector<std::uint32_t>& members, std::vector<double>& rate) {
   const SpeciesRecord* records = all.records.data();
@@ -21,9 +21,11 @@ void diffuse(const SpeciesRecords& all, const NeighbourList& neighbours,
     Lane sum = 0;
     std::array<std::uint32_t, lane_count> places;
     const std::uint32_t* j = places.data();
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
+    thread_local ListBuffer buffer;
+    const auto list = neighbours.of(i, buffer);
+    for (std::size_t k = 0; k < list.size(); k += lane_count) {
       for (std::size_t lane = 0; lane < lane_count; ++lane) {
-        places[lane] = all.place[neighbours.index[k + lane]];
+        places[lane] = all.place[list[k + lane]];
       }
       const Lane dx = x - gather(records, j, &SpeciesRecord::x);
       const Lane dy = y - gather(records, j, &SpeciesRecord::y);

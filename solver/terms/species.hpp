@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/particles/kernel.hpp"
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/packed_lists.hpp"
 
 namespace meltproof::solver {
 
@@ -48,7 +48,7 @@ struct SpeciesRecords {
 
 /// Rate of change of the concentration, 1/s. @param members particles that exchange;
 /// @param rate one for each of them, overwritten.
-void diffuse(const SpeciesRecords& all, const NeighbourList& neighbours,
+void diffuse(const SpeciesRecords& all, const PackedLists& neighbours,
              const QuinticSpline& kernel, SpeciesFactor factor,
              const std::vector<std::uint32_t>& members, std::vector<double>& rate);
 

@@ -18,13 +18,15 @@ struct Pair {
 };
 
 template <class Body>
-void for_each_pair(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void for_each_pair(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                    const QuinticSpline& kernel, std::size_t i, const Body& body) {
   const HeatRecord* all = records.data();
   const HeatRecord& own = all[i];
   const Lane x = own.x, y = own.y, z = own.z;
-  for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; k += lane_count) {
-    const std::uint32_t* j = &neighbours.index[k];
+  thread_local ListBuffer buffer;
+  const auto list = neighbours.of(i, buffer);
+  for (std::size_t k = 0; k < list.size(); k += lane_count) {
+    const std::uint32_t* j = &list[k];
     Pair pair;
     pair.dx = x - gather(all, j, &HeatRecord::x);
     pair.dy = y - gather(all, j, &HeatRecord::y);
@@ -46,7 +48,7 @@ Lane share_of(const SurfaceRecord& own, const SurfaceRecord* all, const std::uin
 }  // namespace
 
 void SurfaceConduction::update(const std::vector<HeatRecord>& records,
-                               const std::vector<Ghost>& ghosts, const NeighbourList& neighbours,
+                               const std::vector<Ghost>& ghosts, const PackedLists& neighbours,
                                const QuinticSpline& kernel,
                                const std::vector<std::uint32_t>* among) {
   const std::size_t n = neighbours.last.size();
@@ -116,14 +118,12 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
   // Receivers: whoever has a particle with a gain among its neighbours.
   for_each_particle(among->size(), [&](std::size_t m) {
     const std::uint32_t i = (*among)[m];
-    takes_part_[i] = surface_[i].gain != 0 ? 1 : 0;
-    for (std::size_t k = neighbours.first[i]; k < neighbours.last[i] && takes_part_[i] == 0; ++k) {
-      takes_part_[i] = surface_[neighbours.index[k]].gain != 0 ? 1 : 0;
-    }
+    const auto gains = [&](std::uint32_t j) { return surface_[j].gain != 0; };
+    takes_part_[i] = surface_[i].gain != 0 || neighbours.any(i, gains) ? 1 : 0;
   });
 }
 
-void SurfaceConduction::add(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+void SurfaceConduction::add(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                             const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
                             std::vector<double>& power) const {
   const HeatRecord* all = records.data();

@@ -42,12 +42,12 @@ class SurfaceConduction {
   /// @param among the particles whose surroundings may have changed since the last call with the
   /// same indices; null: all.
   void update(const std::vector<HeatRecord>& records, const std::vector<Ghost>& ghosts,
-              const NeighbourList& neighbours, const QuinticSpline& kernel,
+              const PackedLists& neighbours, const QuinticSpline& kernel,
               const std::vector<std::uint32_t>* among = nullptr);
 
   /// Adds what the surface conducts beyond conduct(), W m-3, to the particles in `active`, in pairs
   /// of which one is awake.
-  void add(const std::vector<HeatRecord>& records, const NeighbourList& neighbours,
+  void add(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
            const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
            std::vector<double>& power) const;
 

@@ -17,7 +17,7 @@ constexpr double dx = 10e-6, conductivity = 25;
 struct Plate {
   Particles particles;
   QuinticSpline kernel{dx, 3};
-  NeighbourList neighbours;
+  PackedLists neighbours;
   std::vector<HeatRecord> records;
   SurfaceConduction surface;
 
@@ -37,7 +37,7 @@ struct Plate {
         }
       }
     }
-    neighbours = make_neighbours(particles, {}, kernel.support());
+    neighbours = packed(make_neighbours(particles, {}, kernel.support()));
     records.resize(particles.size() + 1);
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const Vector& at = particles.position[i];

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "solver/particles/cell_grid.hpp"
 #include "solver/verification/setup.hpp"
 
 namespace meltproof::solver {
@@ -102,7 +103,7 @@ void start_at_rest(Engine& engine, const std::function<double(const Vector&)>& p
 
 MeltMotion melt_motion(const Engine& engine) {
   const Particles& particles = engine.particles();
-  const NeighbourList& list = engine.neighbours();
+  const PackedLists& list = engine.neighbours();
   const double near = particles.spacing * particles.spacing / 4;
   MeltMotion state;
   double mass = 0;
@@ -113,15 +114,9 @@ MeltMotion melt_motion(const Engine& engine) {
     state.kinetic_energy += particles.mass[i] * square / 2;
     state.fastest = std::max(state.fastest, std::sqrt(square));
     mass += particles.mass[i];
-    bool close = false;
-    for (std::size_t k = list.first[i]; k < list.last[i] && !close; ++k) {
-      const std::uint32_t j = list.index[k];
-      if (j < particles.size()) {
-        const Vector& other = particles.position[j];
-        const double x = at[0] - other[0], y = at[1] - other[1], z = at[2] - other[2];
-        close = x * x + y * y + z * z < near;
-      }
-    }
+    const bool close = list.any(i, [&](std::uint32_t j) {
+      return j < particles.size() && squared_distance(at, particles.position[j]) < near;
+    });
     clumped += close ? 1 : 0;
   }
   if (mass > 0) {
