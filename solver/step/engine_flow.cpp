@@ -203,10 +203,11 @@ void Engine::rebuild_lists(bool everything) {
       place_record(i, i, particles_.position[i]);
     }
   }
-  if (everything || !moved.arrived.empty() || !moved.entries.empty()) {
+  if (everything) {
     surface_search_.forget();
   } else {
     surface_search_.moves(movers_);
+    surface_search_.moves(moved.entries);  // another particle may stand there now
   }
   if (everything) {
     // Everybody has a new index: what was kept by the old ones is made afresh.

@@ -147,17 +147,19 @@ double Engine::lose_surface_heat() {
   }
   if (flow_) {
     std::vector<std::uint32_t> tops;
-    std::copy_if(surface_.top.begin(), surface_.top.end(), std::back_inserter(tops),
-                 [&](std::uint32_t top) {
-                   return top < particles_.size() && particles_.phase[top] == Phase::solid;
-                 });
+    std::vector<std::uint8_t> columns(particles_.size(), 0);  // that a particle is on top of: <= 4
+    for (const std::uint32_t top : surface_.top) {
+      if (top < particles_.size() && particles_.phase[top] == Phase::solid && columns[top]++ == 0) {
+        tops.push_back(top);
+      }
+    }
     std::sort(tops.begin(), tops.end());
     std::vector<ExposedArea> areas;
-    for (std::size_t k = 0; k < tops.size(); ++k) {
-      if (k == 0 || tops[k] != tops[k - 1]) {
-        areas.push_back({tops[k], 0});
+    for (const std::uint32_t top : tops) {
+      areas.push_back({top, 0});
+      for (int column = 0; column < columns[top]; ++column) {
+        areas.back().area += surface_.width * surface_.width;
       }
-      areas.back().area += surface_.width * surface_.width;
     }
     for (const std::uint32_t i : flow_->liquid()) {
       if (const double area = flow_->area(i); area > 0) {
