@@ -42,7 +42,7 @@ void add_fusion_zone(nlohmann::json& result, const TrackCase& t, const Mixture& 
     level[i] = middle ? p.peak_temperature[i] - mixture.liquidus(0)
                       : -std::numeric_limits<double>::infinity();
   }
-  const Extent zone = measure_extent(p, make_neighbours(p, {}, touching * p.spacing), level, true);
+  const Extent zone = measure_extent(p, pack_neighbours(p, {}, touching * p.spacing), level, true);
   result["fusion_width_um"] = 1e6 * zone.width;
   result["fusion_depth_um"] = 1e6 * zone.depth;
 }

@@ -141,7 +141,7 @@ TEST(MeltPool, ASphericalPoolIsMeasuredFinerThanTheSpacing) {
   // A second spot apart from the pool, hotter than all of it, must not count when connected is
   // asked: spray that absorbs the beam may be the hottest there is.
   level[0] = 1;
-  const auto list = make_neighbours(particles, {}, 3 * dx);
+  const auto list = pack_neighbours(particles, {}, 3 * dx);
   const Extent pool = measure_extent(particles, list, level, true);
   // Lattice points nearest to the axes sit half a spacing off them, which shortens chords by 0.25
   // um.

@@ -78,7 +78,7 @@ void measure_pool(HistoryLine& line, const Engine& engine, double reference_temp
   if (p.size() == 0) {
     return;
   }
-  const NeighbourList list = make_neighbours(p, {}, touching * p.spacing);
+  const PackedLists list = pack_neighbours(p, {}, touching * p.spacing);
   std::vector<double> pool(p.size()), liquid(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     std::tie(pool[i], liquid[i]) = levels(p, i);

@@ -11,13 +11,12 @@ namespace {
 /// Calls visit(j) for each neighbour of i that touches it. Images behind the domain's faces do not
 /// count.
 template <class Visit>
-void for_each_touching(const Particles& particles, const NeighbourList& list, std::uint32_t i,
+void for_each_touching(const Particles& particles, const PackedLists& list, std::uint32_t i,
                        const Visit& visit) {
   const double touch = touching * particles.spacing;
-  for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-    const std::uint32_t j = list.index[k];
+  list.each(i, [&](std::uint32_t j) {
     if (j >= particles.size()) {
-      continue;
+      return;
     }
     const auto& a = particles.position[i];
     const auto& b = particles.position[j];
@@ -25,12 +24,12 @@ void for_each_touching(const Particles& particles, const NeighbourList& list, st
     if (x * x + y * y + z * z < touch * touch) {
       visit(j);
     }
-  }
+  });
 }
 
 /// Of the connected regions where `level` is not negative, the one of the largest volume; the first
 /// one of equal ones. Not the one around the hottest particle: that may be spray.
-std::vector<std::uint32_t> largest_region(const Particles& particles, const NeighbourList& list,
+std::vector<std::uint32_t> largest_region(const Particles& particles, const PackedLists& list,
                                           const std::vector<double>& level) {
   std::vector<bool> seen(particles.size(), false);
   std::vector<std::uint32_t> largest, region;
@@ -61,7 +60,7 @@ std::vector<std::uint32_t> largest_region(const Particles& particles, const Neig
 
 }  // namespace
 
-Extent measure_extent(const Particles& particles, const NeighbourList& neighbours,
+Extent measure_extent(const Particles& particles, const PackedLists& neighbours,
                       const std::vector<double>& level, bool connected) {
   Extent extent;
   std::vector<std::uint32_t> region;

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "solver/particles/neighbours.hpp"
+#include "solver/particles/packed_lists.hpp"
 #include "solver/particles/particles.hpp"
 
 namespace meltproof::solver {
@@ -25,7 +25,7 @@ struct Extent {
 /// result does not jump by whole spacings.
 /// @param level per particle, for example T - T_ref; @param connected keep only the largest
 /// connected region by volume (of particles that touch): the hottest particle may be spray.
-Extent measure_extent(const Particles& particles, const NeighbourList& neighbours,
+Extent measure_extent(const Particles& particles, const PackedLists& neighbours,
                       const std::vector<double>& level, bool connected);
 
 }  // namespace meltproof::solver

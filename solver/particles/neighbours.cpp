@@ -30,8 +30,8 @@ ListPlace list_place(std::size_t place) {
   return static_cast<ListPlace>(place);
 }
 
-NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
-                              double reach) {
+PackedLists pack_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
+                            double reach) {
   const Points points{particles, ghosts};
   const CellGrid grid(points, reach, [&](std::size_t i) { return points.there(i); });
   PackedLists lists;
@@ -43,7 +43,12 @@ NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghos
   std::iota(everyone.begin(), everyone.end(), 0U);
   append_lists(lists, grid, ListOrder(particles), points, everyone,
                {.near = reach * reach, .far = 0, .moving = {}});
-  return unpacked(lists);
+  return lists;
+}
+
+NeighbourList make_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
+                              double reach) {
+  return unpacked(pack_neighbours(particles, ghosts, reach));
 }
 
 }  // namespace meltproof::solver

@@ -66,25 +66,6 @@ void append_packed(std::span<const std::uint32_t> entries, std::vector<std::uint
   }
 }
 
-PackedLists packed(const NeighbourList& list) {
-  PackedLists lists;
-  lists.void_index = list.void_index;
-  lists.reach = list.reach;
-  ListBuffer real;
-  for (std::size_t i = 0; i < list.last.size(); ++i) {
-    real.clear();
-    for (std::size_t k = list.first[i]; k < list.last[i]; ++k) {
-      if (list.index[k] != list.void_index) {
-        real.push_back(list.index[k]);
-      }
-    }
-    lists.first.push_back(list_place(lists.code.size()));
-    append_packed(real, lists.code);
-    lists.last.push_back(list_place(lists.code.size()));
-  }
-  return lists;
-}
-
 NeighbourList unpacked(const PackedLists& lists) {
   NeighbourList list;
   list.void_index = lists.void_index;

@@ -62,7 +62,9 @@ bool PackedLists::any(std::size_t i, const Test& test) const {
 /// Appends a list to `code`.
 void append_packed(std::span<const std::uint32_t> entries, std::vector<std::uint16_t>& code);
 
-PackedLists packed(const NeighbourList& list);
+/// The lists of make_neighbours().
+PackedLists pack_neighbours(const Particles& particles, const std::vector<Ghost>& ghosts,
+                            double reach);
 NeighbourList unpacked(const PackedLists& lists);
 
 }  // namespace meltproof::solver

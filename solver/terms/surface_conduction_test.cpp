@@ -37,7 +37,7 @@ struct Plate {
         }
       }
     }
-    neighbours = packed(make_neighbours(particles, {}, kernel.support()));
+    neighbours = pack_neighbours(particles, {}, kernel.support());
     records.resize(particles.size() + 1);
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const Vector& at = particles.position[i];
