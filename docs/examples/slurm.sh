@@ -30,11 +30,12 @@ srun --mpi=pmix --cpus-per-task="$SLURM_CPUS_PER_TASK" "$solve" "$track" --powde
 status=$?
 
 # srun passes on the status of the program: 5 is "stopped by a signal, with a checkpoint". The next job has the ranks,
-# threads and time of this one, whatever was typed.
+# threads, time and log of this one, whatever was typed.
 if [ $status -eq 5 ]; then
   limit=$(squeue --noheader --jobs="$SLURM_JOB_ID" --format=%l)
+  log=$(scontrol show job "$SLURM_JOB_ID" | sed -n 's/^ *StdOut=//p')
   sbatch --dependency=afterany:"$SLURM_JOB_ID" --ntasks="$SLURM_NTASKS" --cpus-per-task="$SLURM_CPUS_PER_TASK" \
-    --time="$limit" "$0" "$track" "$powder" "$output" "$@"
+    --time="$limit" --output="$log" "$0" "$track" "$powder" "$output" "$@"
   exit 0
 fi
 exit $status
