@@ -142,7 +142,7 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
   const auto slot = [&](std::uint32_t j) {
     return slot_of[j] == nowhere ? list_.void_index : slot_of[j];
   };
-  for_each_particle(particle_.size(), [&](std::size_t s) {
+  for_each_sum(particle_.size(), [&](std::size_t s) {
     thread_local ListBuffer buffer;
     const auto entries = list.of(particle_[s], buffer);
     std::transform(entries.begin(), entries.end(),

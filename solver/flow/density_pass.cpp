@@ -25,11 +25,11 @@ void FreeSurfaceFlow::colour_gradients() {
     colour_[i] = {sum_lanes(cx), sum_lanes(cy), sum_lanes(cz)};
     filled_[i] = sum_lanes(filled) / lattice_sum_;
   };
-  for_each_particle(wall_.size(), [&](std::size_t member) {
+  for_each_sum(wall_.size(), [&](std::size_t member) {
     const std::uint32_t i = wall_slot_[member];
     look(i, list_.index.data() + list_.first[i], list_.index.data() + list_.last[i]);
   });
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     look(liquid_slot_[member], near_.index.data() + near_.first[member],
          near_.index.data() + near_.last[member]);
   });
@@ -39,7 +39,7 @@ void FreeSurfaceFlow::colour_gradients() {
 /// and an old one damps a little less but never excites.
 void FreeSurfaceFlow::density_gradients(const std::vector<Ghost>& ghosts) {
   const MotionRecord* all = motion_.data();
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const MotionRecord& own = all[i];
     GradientSums sums;

@@ -85,7 +85,7 @@ void FreeSurfaceFlow::forces(const Particles& particles) {
   const double stiffest = 0.2 * settings_.sound_speed * settings_.sound_speed;
   const double artificial =
       settings_.artificial_viscosity * settings_.sound_speed * kernel_.smoothing_length / 2;
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const ForceRecord& own = all[i];
     const Vector& out = normal_[i];

@@ -236,14 +236,14 @@ class FreeSurfaceFlow {
   template <class Body>
   void for_each_of(const Parts& parts, Part part, std::size_t n, const Body& body) {
     if (halo_.empty()) {
-      for_each_particle(part == Part::inner ? n : 0, body);
+      for_each_sum(part == Part::inner ? n : 0, body);
       return;
     }
     const auto& members = part == Part::inner ? parts.inner : parts.copied;
     // A message moves on only when this rank looks after it.
     const std::size_t chunk = members.size() / 4 + 1;
     for (std::size_t from = 0; from < members.size(); from += chunk) {
-      for_each_particle(std::min(chunk, members.size() - from),
+      for_each_sum(std::min(chunk, members.size() - from),
                         [&](std::size_t k) { body(members[from + k]); });
       if (part == Part::inner) {
         halo_.progress();

@@ -107,7 +107,7 @@ void FreeSurfaceFlow::set_properties(const Particles& particles, const std::vect
   }
   write_surface(particles, ghosts);
   const SurfaceRecord* all = surface_.data();
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     tension_gradient_[i] = {};
@@ -198,7 +198,7 @@ void FreeSurfaceFlow::curvatures(const std::vector<Ghost>& ghosts) {
 void FreeSurfaceFlow::curvatures_below() {
   const SurfaceRecord* all = surface_.data();
   const double outermost = outermost_depth_ * kernel_.smoothing_length;
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     if (own.depth <= outermost) {
@@ -229,7 +229,7 @@ void FreeSurfaceFlow::missing_gradients() {
     return;  // nothing acts on the surface, so the pressure there is zero all along it
   }
   const SurfaceRecord* all = surface_.data();
-  for_each_particle(liquid_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const SurfaceRecord& own = all[i];
     missing_gradient_[i] = {};

@@ -30,7 +30,7 @@ void FreeSurfaceFlow::find_near() {
   // A little more than the square of the support: what rounding leaves in doubt stays.
   near_.reach = kernel_.support() * (1 + 1e-9);
   const Lane limit = near_.reach * near_.reach;
-  for_each_particle(liquid_slot_.size(), [&](std::size_t member) {
+  for_each_sum(liquid_slot_.size(), [&](std::size_t member) {
     const std::uint32_t i = liquid_slot_[member];
     const MotionRecord& own = all[i];
     std::uint32_t* out = &near_.index[near_.first[member]];

@@ -124,7 +124,7 @@ void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbou
              std::vector<double>& power) {
   const HeatRecord* all = records.data();
   std::fill(power.begin(), power.end(), 0.0);
-  for_each_particle(active.size(), [&](std::size_t member) {
+  for_each_sum(active.size(), [&](std::size_t member) {
     const std::uint32_t i = active[member];
     const HeatRecord own = all[i];
     thread_local ListBuffer buffer;
@@ -141,7 +141,7 @@ void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& ne
                    const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
                    std::vector<double>& from_fast, std::vector<double>* from_slow) {
   const HeatRecord* all = records.data();
-  for_each_particle(members.size(), [&](std::size_t member) {
+  for_each_sum(members.size(), [&](std::size_t member) {
     const std::uint32_t i = members[member];
     const HeatRecord own = all[i];
     thread_local ListBuffer buffer;

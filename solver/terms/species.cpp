@@ -13,7 +13,7 @@ void diffuse(const SpeciesRecords& all, const PackedLists& neighbours,
   const SpeciesRecord* records = all.records.data();
   const double weight = factor == SpeciesFactor::consistent ? 2.0 : 4.0;
   rate.resize(members.size());
-  for_each_particle(members.size(), [&](std::size_t member) {
+  for_each_sum(members.size(), [&](std::size_t member) {
     const std::uint32_t i = members[member];
     const SpeciesRecord& own = records[all.place[i]];
     const Lane x = own.x, y = own.y, z = own.z, diffusivity = own.diffusivity,

@@ -64,7 +64,7 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
   }
   surface_.resize(records.size());
   surface_.back() = {};  // the void
-  for_each_particle(among->size(), [&](std::size_t m) {
+  for_each_sum(among->size(), [&](std::size_t m) {
     const std::uint32_t i = (*among)[m];
     Lane x = 0, y = 0, z = 0;
     for_each_pair(records, neighbours, kernel, i, [&](const std::uint32_t* j, const Pair& pair) {
@@ -92,7 +92,7 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
   std::vector<double> gain(members.size());
   for (int sweep = 0; sweep < 6; ++sweep) {
     refresh_images();
-    for_each_particle(members.size(), [&](std::size_t m) {
+    for_each_sum(members.size(), [&](std::size_t m) {
       const std::uint32_t i = members[m];
       const SurfaceRecord own = surface_[i];
       const SurfaceRecord along{1, own.nx, own.ny, own.nz};
@@ -116,7 +116,7 @@ void SurfaceConduction::update(const std::vector<HeatRecord>& records,
   }
   refresh_images();
   // Receivers: whoever has a particle with a gain among its neighbours.
-  for_each_particle(among->size(), [&](std::size_t m) {
+  for_each_sum(among->size(), [&](std::size_t m) {
     const std::uint32_t i = (*among)[m];
     const auto gains = [&](std::uint32_t j) { return surface_[j].gain != 0; };
     takes_part_[i] = surface_[i].gain != 0 || neighbours.any(i, gains) ? 1 : 0;
@@ -127,7 +127,7 @@ void SurfaceConduction::add(const std::vector<HeatRecord>& records, const Packed
                             const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
                             std::vector<double>& power) const {
   const HeatRecord* all = records.data();
-  for_each_particle(active.size(), [&](std::size_t m) {
+  for_each_sum(active.size(), [&](std::size_t m) {
     const std::uint32_t i = active[m];
     if (takes_part_[i] == 0) {
       return;
