@@ -57,12 +57,12 @@ struct Plate {
     std::vector<double> result(particles.size(), 0.0);
     for (std::size_t i = 0; i < particles.size(); ++i) {
       const HeatRecord& a = records[i];
-      for (std::size_t k = neighbours.first[i]; k < neighbours.last[i]; ++k) {
-        const HeatRecord& b = records[neighbours.index[k]];
+      neighbours.each(i, [&](std::uint32_t j) {
+        const HeatRecord& b = records[j];
         const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
         result[i] += conduction_pair(a.conductivity, a.temperature, b.conductivity, b.temperature,
                                      b.volume, kernel.gradient_factor(x * x + y * y + z * z));
-      }
+      });
     }
     if (corrected) {
       std::vector<std::uint32_t> active(result.size());
