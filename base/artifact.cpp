@@ -149,7 +149,7 @@ std::filesystem::path ArtifactWriter::close(const Provenance& provenance) {
         "from the start of the program to this file");
   if (H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL) < 0 || !state_->file.reset() ||
       !take_room(state_->place.temporary())) {
-    state_->fail("as a whole");
+    state_->fail();
   }
   return state_->place.temporary();
 }

@@ -22,10 +22,11 @@ struct ArtifactWriter::State {
 
   explicit State(const std::filesystem::path& path) : place(path) {}
 
-  [[noreturn]] void fail(const std::string& name) {
-    throw std::runtime_error(fmt::format(
-        "{}: the data set {} cannot be written (is the disk full?); nothing was left behind",
-        place.place().string(), name));
+  /// @param name of a data set; empty: the file as a whole.
+  [[noreturn]] void fail(const std::string& name = "") {
+    throw std::runtime_error(
+        fmt::format("{}: {} cannot be written (is the disk full?); nothing was left behind",
+                    place.place().string(), name.empty() ? "it" : "the data set " + name));
   }
 
   Handle space_of(const std::vector<hsize_t>& dims) const {

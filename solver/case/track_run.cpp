@@ -9,42 +9,18 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "base/artifact.hpp"
-#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "base/stop_request.hpp"
 #include "solver/case/time_left.hpp"
+#include "solver/case/track_files.hpp"
 #include "solver/case/track_result.hpp"
 #include "solver/output/checkpoint.hpp"
-#include "solver/output/paraview.hpp"
 #include "solver/output/run_summary.hpp"
 #include "solver/output/whole.hpp"
-#include "solver/parallel/agreement.hpp"
 
 namespace meltproof::solver {
 namespace {
-
-void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engine,
-                 const Discretisation& made) {
-  writer.attribute("title", t.title);
-  writer.write("spacing", t.spacing, "m", "particle spacing");
-  writer.write("smoothing_length", engine.kernel().smoothing_length, "m",
-               "of the quintic spline, support 3 h");
-  writer.write("scan_speed", t.speed, "m s-1", "of the beam along x");
-  writer.write("laser_power", t.power, "W", "of the beam");
-  writer.write("beam_radius", t.beam_radius, "m", "1/e2 radius");
-  writer.write("exposure", t.exposure, "s", "the beam is on from 0 to here");
-  writer.write("additive_mass_fraction", made.bed_additive_mass_fraction, "1",
-               "of the powder blend as spheres");
-  writer.write("reference_temperature", pool_isotherm(t, engine.mixture()), "K",
-               "outlines the melt pool");
-  writer.write("initial_temperature", t.initial_temperature, "K", "of plate and powder");
-  writer.write("domain/lower", std::span<const double>(made.domain.lower), {3}, "m",
-               "lower corner of the domain");
-  writer.write("domain/upper", std::span<const double>(made.domain.upper), {3}, "m",
-               "upper corner of the domain");
-}
 
 /// A run under way.
 class TrackRun {
@@ -70,7 +46,7 @@ class TrackRun {
     if (!restarted_) {
       run_.lines = {measure(*engine_, reference_, run_.start_enthalpy)};
       run_.history = 1;
-      checkpoints_.write_snapshot(run_.snapshots++, *engine_, provenance_);
+      take_snapshot();
     }
     {
       const StopRequest stop;
@@ -84,17 +60,6 @@ class TrackRun {
   }
 
  private:
-  /// What runs that were killed here left of run.h5.
-  void remove_leftovers() const {
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(options_.folder, none)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with(".run.") && name.ends_with(".tmp.h5")) {
-        std::filesystem::remove(entry.path(), none);
-      }
-    }
-  }
-
   std::size_t particle_count() const {
     const auto& home = engine_->particles().home;
     return ranks_.add(static_cast<std::uint64_t>(std::count(home.begin(), home.end(), Home::here)));
@@ -159,7 +124,7 @@ class TrackRun {
       goes_on = note(dt, engine_->time() == next_line, progress);
     }
     if (engine_->time() == next_frame && next_frame < t_.exposure) {
-      checkpoints_.write_snapshot(run_.snapshots++, *engine_, provenance_);
+      take_snapshot();
     }
     if (goes_on) {
       save_if_due(stop);
@@ -226,6 +191,27 @@ class TrackRun {
            (!engine_->model().flow && ranks_.any(now.pool.found || now.any_liquid.found));
   }
 
+  /// Writes something; should that fail, says what there is to go on from.
+  template <class Write>
+  void keep(const Write& write) const {
+    try {
+      write();
+    } catch (const InputError&) {
+      throw;  // nothing that room would cure
+    } catch (const std::runtime_error& problem) {
+      throw std::runtime_error(
+          fmt::format("{}; {}; make room and use --restart", problem.what(),
+                      checkpoints_.last().empty()
+                          ? "there is no earlier checkpoint"
+                          : "the checkpoint before it stands, " + checkpoints_.last().string()));
+    }
+  }
+
+  void take_snapshot() {
+    keep([&] { checkpoints_.write_snapshot(run_.snapshots, *engine_, provenance_); });
+    ++run_.snapshots;
+  }
+
   void save_if_due(const StopRequest& stop) {
     const auto now = std::chrono::steady_clock::now();
     const double since = std::chrono::duration<double>(now - written_).count();
@@ -247,15 +233,7 @@ class TrackRun {
     }
     run_.wall_time = seconds();
     std::filesystem::path place;
-    try {
-      place = checkpoints_.write(*engine_, run_, provenance_);
-    } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(
-          fmt::format("{}; {}; make room and use --restart", problem.what(),
-                      checkpoints_.last().empty()
-                          ? "there is no earlier checkpoint"
-                          : "the one before it stands, " + checkpoints_.last().string()));
-    }
+    keep([&] { place = checkpoints_.write(*engine_, run_, provenance_); });
     written_ = std::chrono::steady_clock::now();
     if (stopping) {
       throw Stopped(
@@ -270,7 +248,7 @@ class TrackRun {
     spdlog::info("{} thermal and {} flow steps, {} list builds", engine_->steps(),
                  engine_->flow_steps(), engine_->list_builds());
     // The last snapshot is the solidified track.
-    checkpoints_.write_snapshot(run_.snapshots++, *engine_, provenance_);
+    take_snapshot();
     const Whole whole(*engine_);
     Acceptance acceptance;
     if (ranks_.root()) {
@@ -285,19 +263,9 @@ class TrackRun {
     nlohmann::json result = track_result(t_, made_, *engine_, run_, whole.particles(), acceptance);
     result["case"] = options_.name;
     result["provenance"] = provenance_.json();
-    std::optional<ArtifactWriter> file;
-    on_root(ranks_, [&] {
-      remove_leftovers();
-      file.emplace(options_.folder / "run.h5", "meltproof run");
-      write_facts(*file, t_, *engine_, made_);
-    });
-    checkpoints_.copy_snapshots(file ? &*file : nullptr, run_.snapshots);
-    on_root(ranks_, [&] {
-      file->commit(provenance_);
-      write_xdmf(options_.folder / "run.h5");
-      write_file(options_.folder / "history.csv", history_csv(run_.lines));
-      write_file(options_.folder / "input.toml", provenance_.resolved_input);
-      write_file(options_.folder / "result.json", result.dump(2) + "\n");
+    keep([&] {
+      write_track_files(options_.folder, t_, *engine_, made_, checkpoints_, run_, provenance_,
+                        result);
     });
     checkpoints_.clear();
     if (!options_.quiet && ranks_.root()) {

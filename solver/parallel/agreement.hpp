@@ -2,9 +2,11 @@
 // What fails on one rank fails on all of them.
 #pragma once
 
+#include <chrono>
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "base/error.hpp"
 #include "solver/parallel/ranks.hpp"
@@ -31,6 +33,10 @@ void agree(const Ranks& ranks, const Work& work) {
   }
   if (problem.front() == input) {
     throw InputError(problem.substr(1));
+  }
+  if (!ranks.root()) {
+    // All are about to say the same; where that ends the program, the root has done so by then.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
   }
   throw std::runtime_error(problem.substr(1));
 }

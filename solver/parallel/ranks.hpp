@@ -23,8 +23,8 @@ class MpiSession {
   MpiSession& operator=(const MpiSession&) = delete;
   /// @throws InputError if srun started several processes of which each believes to be alone.
   static void check();
-  /// Ends all processes at once, after a failure of this one that the others do not know of; does
-  /// nothing where the program is alone.
+  /// Ends all processes at once, after a failure of this one that the others may not know of; does
+  /// nothing where MPI was not started.
   void give_up(int status) const;
 };
 

@@ -39,7 +39,10 @@ SharedArtifact::SharedArtifact(const Ranks& ranks, const std::filesystem::path& 
   state_->transfer = Handle{H5Pcreate(H5P_DATASET_XFER), &H5Pclose};
   if (!ranks.alone()) {
     H5Pset_fapl_mpio(state_->access.get(), MPI_COMM_WORLD, MPI_INFO_NULL);
-    H5Pset_dxpl_mpio(state_->transfer.get(), H5FD_MPIO_COLLECTIVE);
+    // Each rank's rows are one piece of the file, so there is nothing that ranks could gather for
+    // each other; and where a disk fills up, Open MPI's collective writes wait for ever for the
+    // rank that met it.
+    H5Pset_dxpl_mpio(state_->transfer.get(), H5FD_MPIO_INDEPENDENT);
   }
   state_->file = H5Fopen(temporary.c_str(), H5F_ACC_RDWR, state_->access.get());
   agree(ranks, [&] {
@@ -63,6 +66,9 @@ void SharedArtifact::write(const std::string& name, std::size_t first, std::span
   std::vector<hsize_t> part(
       static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(target.get()))));
   H5Sget_simple_extent_dims(target.get(), part.data(), nullptr);
+  if (part.at(0) == 0) {
+    return;  // for all ranks: nothing has room in it
+  }
   std::size_t width = 1;
   for (std::size_t d = 1; d < part.size(); ++d) {
     width *= part[d];
@@ -82,7 +88,7 @@ void SharedArtifact::write(const std::string& name, std::size_t first, std::span
   if (H5Dwrite(set.get(), native_type<T>(), memory.get(), target.get(), state_->transfer.get(),
                rows.data()) < 0 &&
       state_->failed.empty()) {
-    state_->failed = name;
+    state_->failed = "the data set " + name;
   }
 }
 
@@ -106,10 +112,10 @@ void SharedArtifact::commit() {
     });
   };
   if (H5Fflush(state_->file, H5F_SCOPE_GLOBAL) < 0 && state_->failed.empty()) {
-    state_->failed = "as a whole it";
+    state_->failed = "it";
   }
   check(state_->failed);
-  check(H5Fclose(state_->file) < 0 ? "as a whole it" : "");
+  check(H5Fclose(state_->file) < 0 ? "it" : "");
   on_root(state_->ranks, [&] { state_->writer->put_in_place(); });
 }
 

@@ -46,9 +46,6 @@ void Engine::check_ranks() const {
   if (model_.surface_conduction) {
     refuse("physics.surface_conduction = true");
   }
-  if (model_.laser && model_.laser->reflections) {
-    refuse("laser.absorption = \"ray_traced\"");
-  }
   for (const auto& faces : model_.domain.face) {
     for (const Face face : faces) {
       if (face != Face::open) {
