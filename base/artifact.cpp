@@ -1,141 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/artifact.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include "base/artifact_hdf5.hpp"
-#include "base/atomic_file.hpp"
+#include "base/artifact_state.hpp"
 #include "base/error.hpp"
 
 namespace meltproof {
+namespace {
 
-struct ArtifactWriter::State {
-  bool prepared = prepare_hdf5();  // before any other call of the library
-  AtomicFile place;
-  bool in_memory;
-  Handle file{H5I_INVALID_HID, &H5Fclose};
-  Handle link_options{H5Pcreate(H5P_LINK_CREATE), &H5Pclose};
-  bool failed = false;
-
-  State(const std::filesystem::path& path, bool memory) : place(path), in_memory(memory) {}
-
-  [[noreturn]] void fail(const std::string& name) {
-    failed = true;
-    throw std::runtime_error(fmt::format(
-        "{}: the data set {} cannot be written (is the disk full?); nothing was left behind",
-        place.place().string(), name));
+/// Has the disk set aside what a file as long as this one takes, holes included; false where it is
+/// full. A file system that cannot is no reason to stop.
+bool take_room(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) {
+    return false;
   }
+  const auto size = static_cast<off_t>(std::filesystem::file_size(path));
+  const int problem = size > 0 ? ::posix_fallocate(file, 0, size) : 0;
+  ::close(file);
+  return problem != ENOSPC && problem != EDQUOT && problem != EFBIG && problem != EIO;
+}
 
-  void describe(const Handle& set, const std::string& units, const std::string& description) {
-    write_text_attribute(set.get(), "units", units);
-    write_text_attribute(set.get(), "description", description);
-  }
+}  // namespace
 
-  template <class T>
-  void write(const std::string& name, std::span<const T> values,
-             const std::vector<std::size_t>& shape, const std::string& units,
-             const std::string& description) {
-    std::size_t count = 1;
-    for (const auto n : shape) {
-      count *= n;
-    }
-    if (count != values.size()) {
-      throw std::logic_error(fmt::format("data set {}: {} values do not fill the shape of {}", name,
-                                         values.size(), count));
-    }
-    const auto dims = extent(shape);
-    const Handle space{shape.empty()
-                           ? H5Screate(H5S_SCALAR)
-                           : H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr),
-                       &H5Sclose};
-    const Handle options{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
-    H5Pset_obj_track_times(options.get(), false);
-    if (count > 4096 && !dims.empty()) {
-      auto chunk = dims;
-      std::size_t rest = 1;
-      for (std::size_t d = 1; d < dims.size(); ++d) {
-        rest *= dims[d];
-      }
-      chunk[0] = std::clamp<hsize_t>((1U << 17) / std::max<std::size_t>(1, rest), 1, dims[0]);
-      H5Pset_chunk(options.get(), static_cast<int>(chunk.size()), chunk.data());
-      H5Pset_shuffle(options.get());
-      H5Pset_deflate(options.get(), 4);
-    }
-    const Handle set{H5Dcreate2(file.get(), name.c_str(), native_type<T>(), space.get(),
-                                link_options.get(), options.get(), H5P_DEFAULT),
-                     &H5Dclose};
-    if (!set.valid() || (count > 0 && H5Dwrite(set.get(), native_type<T>(), H5S_ALL, H5S_ALL,
-                                               H5P_DEFAULT, values.data()) < 0)) {
-      fail(name);
-    }
-    describe(set, units, description);
-  }
-
-  template <class T>
-  void append(const std::string& name, std::span<const T> slab,
-              const std::vector<std::size_t>& slab_shape, const std::string& units,
-              const std::string& description) {
-    auto dims = extent(slab_shape);
-    dims.insert(dims.begin(), 1);
-    Handle set{H5Lexists(file.get(), name.substr(0, name.find('/')).c_str(), H5P_DEFAULT) > 0
-                   ? H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT)
-                   : H5I_INVALID_HID,
-               &H5Dclose};
-    hsize_t at = 0;
-    if (!set.valid()) {
-      auto none = dims, most = dims;
-      none[0] = 0;
-      most[0] = H5S_UNLIMITED;
-      const Handle space{H5Screate_simple(static_cast<int>(dims.size()), none.data(), most.data()),
-                         &H5Sclose};
-      const Handle options{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
-      H5Pset_obj_track_times(options.get(), false);
-      H5Pset_chunk(options.get(), static_cast<int>(dims.size()), dims.data());
-      H5Pset_shuffle(options.get());
-      H5Pset_deflate(options.get(), 1);
-      set = Handle{H5Dcreate2(file.get(), name.c_str(), native_type<T>(), space.get(),
-                              link_options.get(), options.get(), H5P_DEFAULT),
-                   &H5Dclose};
-      if (!set.valid()) {
-        fail(name);
-      }
-      describe(set, units, description);
-    } else {
-      const Handle space{H5Dget_space(set.get()), &H5Sclose};
-      std::vector<hsize_t> now(dims.size());
-      H5Sget_simple_extent_dims(space.get(), now.data(), nullptr);
-      at = now[0];
-    }
-    auto grown = dims;
-    grown[0] = at + 1;
-    std::vector<hsize_t> start(dims.size(), 0);
-    start[0] = at;
-    if (H5Dset_extent(set.get(), grown.data()) < 0) {
-      fail(name);
-    }
-    const Handle target{H5Dget_space(set.get()), &H5Sclose};
-    H5Sselect_hyperslab(target.get(), H5S_SELECT_SET, start.data(), nullptr, dims.data(), nullptr);
-    const Handle source{H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr),
-                        &H5Sclose};
-    if (H5Dwrite(set.get(), native_type<T>(), source.get(), target.get(), H5P_DEFAULT,
-                 slab.data()) < 0) {
-      fail(name);
-    }
-  }
-};
-
-ArtifactWriter::ArtifactWriter(const std::filesystem::path& path, const std::string& kind,
-                               bool in_memory)
-    : state_(std::make_unique<State>(path, in_memory)) {
+ArtifactWriter::ArtifactWriter(const std::filesystem::path& path, const std::string& kind)
+    : state_(std::make_unique<State>(path)) {
   const Handle options{H5Pcreate(H5P_FILE_CREATE), &H5Pclose};
   H5Pset_obj_track_times(options.get(), false);
-  const Handle access{H5Pcreate(H5P_FILE_ACCESS), &H5Pclose};
-  if (in_memory) {
-    constexpr std::size_t growth = std::size_t{1} << 22U;
-    H5Pset_fapl_core(access.get(), growth, false);
-  }
   state_->file = Handle{
-      H5Fcreate(state_->place.temporary().c_str(), H5F_ACC_TRUNC, options.get(), access.get()),
+      H5Fcreate(state_->place.temporary().c_str(), H5F_ACC_TRUNC, options.get(), H5P_DEFAULT),
       &H5Fclose};
   if (!state_->file.valid()) {
     throw InputError(fmt::format(
@@ -193,26 +89,45 @@ void ArtifactWriter::attribute(const std::string& name, const std::string& value
   write_text_attribute(at.get(), name, value);
 }
 
-void ArtifactWriter::copy_from(const ArtifactReader& other, const std::string& group) {
-  // Asked beforehand, because HDF5's copying does not survive a disk that fills up meanwhile.
-  std::error_code unknown;
-  const auto room = std::filesystem::space(state_->place.temporary().parent_path(), unknown);
-  if (!unknown && room.available < std::filesystem::file_size(other.path()) + (1U << 20U)) {
-    state_->fail(group + " of " + other.path().string());
-  }
-  const Handle from{H5Fopen(other.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose};
-  if (!from.valid() || !copy_group(from.get(), state_->file.get(), group)) {
-    state_->fail(group + " of " + other.path().string());
-  }
+template <class T>
+void ArtifactWriter::reserve(const std::string& name, const std::vector<std::size_t>& shape,
+                             const std::string& units, const std::string& description) {
+  const Handle options{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+  H5Pset_alloc_time(options.get(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(options.get(), H5D_FILL_TIME_NEVER);
+  state_->make(name, native_type<T>(), extent(shape), options, units, description);
 }
+#define MELTPROOF_RESERVE(T)                                                                    \
+  template void ArtifactWriter::reserve<T>(const std::string&, const std::vector<std::size_t>&, \
+                                           const std::string&, const std::string&);
+MELTPROOF_RESERVE(double)
+MELTPROOF_RESERVE(float)
+MELTPROOF_RESERVE(std::int64_t)
+MELTPROOF_RESERVE(std::int32_t)
+MELTPROOF_RESERVE(std::uint16_t)
+MELTPROOF_RESERVE(std::uint8_t)
+#undef MELTPROOF_RESERVE
 
-void ArtifactWriter::copy_to(ArtifactWriter& other, const std::string& group) const {
-  if (!copy_group(state_->file.get(), other.state_->file.get(), group)) {
-    other.state_->fail(group);
+void ArtifactWriter::copy_from(const ArtifactReader& other, const std::string& group) {
+  const auto names = other.names(group);
+  const Handle from{H5Fopen(other.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), &H5Fclose};
+  for (const auto& name : names) {
+    const std::string path = group + "/" + name;
+    const Handle set{H5Dopen2(from.get(), path.c_str(), H5P_DEFAULT), &H5Dclose};
+    if (!set.valid()) {
+      throw InputError(fmt::format("{}: {} is no data set: the file is of another kind or version",
+                                   other.path().string(), path));
+    }
+    state_->copy(set, path);
   }
 }
 
 void ArtifactWriter::commit(const Provenance& provenance) {
+  close(provenance);
+  put_in_place();
+}
+
+std::filesystem::path ArtifactWriter::close(const Provenance& provenance) {
   {
     const Handle group{
         H5Gcreate2(state_->file.get(), "provenance", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
@@ -232,20 +147,13 @@ void ArtifactWriter::commit(const Provenance& provenance) {
   write("provenance/threads", provenance.threads, "1", "threads per rank");
   write("provenance/wall_time", provenance.wall_time, "s",
         "from the start of the program to this file");
-  if (H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL) < 0) {
-    state_->fail("as a whole");
+  if (H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL) < 0 || !state_->file.reset() ||
+      !take_room(state_->place.temporary())) {
+    state_->fail();
   }
-  if (state_->in_memory) {
-    std::string image(static_cast<std::size_t>(H5Fget_file_image(state_->file.get(), nullptr, 0)),
-                      '\0');
-    H5Fget_file_image(state_->file.get(), image.data(), image.size());
-    write_file(state_->place.place(), image);
-    return;
-  }
-  if (!state_->file.reset()) {
-    state_->fail("as a whole");
-  }
-  state_->place.commit();
+  return state_->place.temporary();
 }
+
+void ArtifactWriter::put_in_place() { state_->place.commit(); }
 
 }  // namespace meltproof

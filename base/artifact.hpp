@@ -25,11 +25,8 @@ class ArtifactReader;
 class ArtifactWriter {
  public:
   /// @param kind what the artifact is, for example "meltproof powder bed"; readers check it.
-  /// @param in_memory builds the file in memory and writes it whole at commit(): for what must not
-  /// be caught by a full disk half-way, which HDF5 itself does not survive.
   /// @throws InputError if the folder does not exist or cannot be written.
-  ArtifactWriter(const std::filesystem::path& path, const std::string& kind,
-                 bool in_memory = false);
+  ArtifactWriter(const std::filesystem::path& path, const std::string& kind);
   ~ArtifactWriter();
   ArtifactWriter(const ArtifactWriter&) = delete;
   ArtifactWriter& operator=(const ArtifactWriter&) = delete;
@@ -69,18 +66,32 @@ class ArtifactWriter {
               const std::vector<std::size_t>& slab_shape, const std::string& units,
               const std::string& description);
 
+  /// Makes a data set of `shape` that is filled after close(), by whoever opens the file: one piece
+  /// of the file, neither compressed nor in chunks, so that many may write into it at a time. T is
+  /// what write() takes.
+  template <class T>
+  void reserve(const std::string& name, const std::vector<std::size_t>& shape,
+               const std::string& units, const std::string& description);
+
   /// A text attribute of the root group, or of `object` if given.
   void attribute(const std::string& name, const std::string& value,
                  const std::string& object = "/");
 
-  /// Copies a group with everything in it, by the same name, from another artifact or into one that
-  /// is being written. @throws std::runtime_error with a sentence if that fails.
+  /// Copies the data sets of a group, by the same names, from another artifact: a chunk at a time
+  /// and compressed, however they are stored there.
+  /// @throws InputError if there is no such group, std::runtime_error if the disk is full.
   void copy_from(const ArtifactReader& other, const std::string& group);
-  void copy_to(ArtifactWriter& other, const std::string& group) const;
 
   /// Writes `/provenance`, closes the file and gives it its name. @throws std::runtime_error with a
   /// sentence if the disk is full.
   void commit(const Provenance& provenance);
+
+  /// commit() in two steps, for what is filled between them. close() writes `/provenance` and takes
+  /// all of the file's room on the disk, so that a full one is met here and not while it is filled.
+  /// @returns the temporary name under which it stands until put_in_place() gives it its own.
+  /// @throws std::runtime_error with a sentence if the disk is full.
+  std::filesystem::path close(const Provenance& provenance);
+  void put_in_place();
 
  private:
   struct State;

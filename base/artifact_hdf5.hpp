@@ -131,11 +131,4 @@ inline std::string read_text_attribute(hid_t object, const std::string& name) {
   return text.substr(0, text.find('\0'));
 }
 
-/// Copies a group with everything in it by the same name; false if that fails.
-inline bool copy_group(hid_t from, hid_t to, const std::string& group) {
-  const Handle links{H5Pcreate(H5P_LINK_CREATE), &H5Pclose};
-  H5Pset_create_intermediate_group(links.get(), 1);
-  return H5Ocopy(from, group.c_str(), to, group.c_str(), H5P_DEFAULT, links.get()) >= 0;
-}
-
 }  // namespace meltproof

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/artifact.hpp"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
+#include "base/artifact_hdf5.hpp"
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 
@@ -66,28 +70,66 @@ TEST(Artifact, NothingIsLeftBehindWithoutCommit) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
-TEST(Artifact, GroupsAreCopiedInAndOutAndAFileMadeInMemoryReadsTheSame) {
+TEST(Artifact, AGroupIsCopiedFromAFileWhoseSetsAreOnePieceIntoOneThatCompresses) {
   const auto folder = fresh_folder("artifact_copy");
-  const std::vector<double> values{1.5, -2, 3e300};
-  ArtifactWriter source(folder / "whole.h5", "meltproof test");
-  source.write("part/0/values", std::span<const double>(values), {3}, "m", "some");
-  source.write("part/1/values", std::span<const double>(values), {3}, "m", "others");
+  // More than a chunk, and no multiple of one.
+  std::vector<double> values(3 * 50000);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = 0.5 * static_cast<double>(i % 1000);
+  }
   {
-    ArtifactWriter piece(folder / "piece.h5", "meltproof piece", true);
-    source.copy_to(piece, "part/1");
+    ArtifactWriter piece(folder / "piece.h5", "meltproof piece");
+    piece.reserve<double>("part/1/values", {50000, 3}, "m", "some");
+    piece.write("part/1/time", 2.5, "s", "a single number");
+    piece.write("part/0/values", std::span<const double>(values), {50000, 3}, "m", "others");
+    const auto place = piece.close({});
     EXPECT_FALSE(std::filesystem::exists(folder / "piece.h5"));
-    piece.commit({});
+    {
+      const Handle file{H5Fopen(place.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), &H5Fclose};
+      const Handle set{H5Dopen2(file.get(), "part/1/values", H5P_DEFAULT), &H5Dclose};
+      ASSERT_GE(
+          H5Dwrite(set.get(), native_type<double>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+          0);
+    }
+    piece.put_in_place();
   }
   const ArtifactReader piece(folder / "piece.h5", "meltproof piece");
-  EXPECT_FALSE(piece.has("part/0/values"));
+  EXPECT_GT(std::filesystem::file_size(folder / "piece.h5"), 8 * values.size());
   ArtifactWriter again(folder / "again.h5", "meltproof test");
   again.copy_from(piece, "part/1");
   again.commit({});
-  const auto read = ArtifactReader(folder / "again.h5").read<double>("part/1/values");
+  const ArtifactReader reader(folder / "again.h5");
+  const auto read = reader.read<double>("part/1/values");
   EXPECT_EQ(read.values, values);
   EXPECT_EQ(read.units, "m");
-  EXPECT_THROW(ArtifactWriter(folder / "no.h5", "meltproof test").copy_from(piece, "part/0"),
-               std::runtime_error);
+  EXPECT_EQ(reader.scalar("part/1/time"), 2.5);
+  EXPECT_FALSE(reader.has("part/0/values"));
+  EXPECT_LT(std::filesystem::file_size(folder / "again.h5"), 2 * values.size());
+  EXPECT_THROW(ArtifactWriter(folder / "no.h5", "meltproof test").copy_from(piece, "part/2"),
+               InputError);
+}
+
+TEST(Artifact, WhatIsReservedHasItsRoomOnTheDiskOrIsRefused) {
+  const auto folder = fresh_folder("artifact_room");
+  constexpr std::size_t count = 1 << 18;
+  ArtifactWriter writer(folder / "a.h5", "example");
+  writer.reserve<double>("values", {count}, "m", "filled later");
+  struct stat found {};
+  ASSERT_EQ(::stat(writer.close({}).c_str(), &found), 0);
+  EXPECT_GE(static_cast<std::size_t>(found.st_blocks) * 512, 8 * count);
+  // No file may grow that far: as on a full disk.
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{4 * count, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  {
+    ArtifactWriter refused(folder / "b.h5", "example");
+    refused.reserve<double>("values", {count}, "m", "filled later");
+    EXPECT_THROW(refused.close({}), std::runtime_error);
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
 TEST(Artifact, AnotherKindOrNoHdf5IsRefused) {

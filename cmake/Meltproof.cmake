@@ -12,6 +12,7 @@ find_package(GTest REQUIRED)
 find_package(Eigen3 REQUIRED)
 find_package(GSL REQUIRED)
 pkg_check_modules(HDF5_SERIAL REQUIRED IMPORTED_TARGET hdf5-serial)
+pkg_check_modules(HDF5_OPENMPI REQUIRED IMPORTED_TARGET hdf5-openmpi)
 find_package(MPI REQUIRED COMPONENTS CXX)
 find_path(ZOLTAN_INCLUDE_DIR zoltan.h PATH_SUFFIXES trilinos REQUIRED)
 find_library(ZOLTAN_LIBRARY trilinos_zoltan REQUIRED)
@@ -45,11 +46,14 @@ function(meltproof_library name)
   target_link_libraries(${name} PUBLIC meltproof_options ${ARG_LIBRARIES})
 endfunction()
 
+# Which of the two bases programs link, see base/CMakeLists.txt; the solver's folder sets the other.
+set(MELTPROOF_BASE meltproof_base)
+
 # meltproof_program(name SOURCES main.cpp LIBRARIES ...): a command-line tool of the suite.
 function(meltproof_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE meltproof_options meltproof_base ${ARG_LIBRARIES})
+  target_link_libraries(${name} PRIVATE meltproof_options ${MELTPROOF_BASE} ${ARG_LIBRARIES})
 endfunction()
 
 # meltproof_test(name SOURCES x_test.cpp ... LIBRARIES ... [LABELS ...] [TIMEOUT s]): one GoogleTest

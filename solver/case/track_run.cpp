@@ -9,42 +9,18 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "base/artifact.hpp"
-#include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "base/progress.hpp"
 #include "base/stop_request.hpp"
 #include "solver/case/time_left.hpp"
+#include "solver/case/track_files.hpp"
 #include "solver/case/track_result.hpp"
 #include "solver/output/checkpoint.hpp"
-#include "solver/output/paraview.hpp"
 #include "solver/output/run_summary.hpp"
-#include "solver/output/snapshot.hpp"
 #include "solver/output/whole.hpp"
 
 namespace meltproof::solver {
 namespace {
-
-void write_facts(ArtifactWriter& writer, const TrackCase& t, const Engine& engine,
-                 const Discretisation& made) {
-  writer.attribute("title", t.title);
-  writer.write("spacing", t.spacing, "m", "particle spacing");
-  writer.write("smoothing_length", engine.kernel().smoothing_length, "m",
-               "of the quintic spline, support 3 h");
-  writer.write("scan_speed", t.speed, "m s-1", "of the beam along x");
-  writer.write("laser_power", t.power, "W", "of the beam");
-  writer.write("beam_radius", t.beam_radius, "m", "1/e2 radius");
-  writer.write("exposure", t.exposure, "s", "the beam is on from 0 to here");
-  writer.write("additive_mass_fraction", made.bed_additive_mass_fraction, "1",
-               "of the powder blend as spheres");
-  writer.write("reference_temperature", pool_isotherm(t, engine.mixture()), "K",
-               "outlines the melt pool");
-  writer.write("initial_temperature", t.initial_temperature, "K", "of plate and powder");
-  writer.write("domain/lower", std::span<const double>(made.domain.lower), {3}, "m",
-               "lower corner of the domain");
-  writer.write("domain/upper", std::span<const double>(made.domain.upper), {3}, "m",
-               "upper corner of the domain");
-}
 
 /// A run under way.
 class TrackRun {
@@ -56,7 +32,7 @@ class TrackRun {
         provenance_(std::move(provenance)),
         mixture_(read_mixture(track)),
         made_(discretise(track, mixture_)),
-        checkpoints_(options.folder),
+        checkpoints_(options.folder, options.ranks),
         reference_(pool_isotherm(track, mixture_)),
         judged_(track_acceptance(made_.domain.lower, made_.domain.upper,
                                  track.speed * track.exposure, track.beam_radius)),
@@ -65,46 +41,25 @@ class TrackRun {
         written_(begun_) {}
 
   nlohmann::json carry_out() {
+    provenance_.ranks = ranks_.size();
     start();
-    std::optional<ArtifactWriter> file;
-    if (ranks_.root()) {
-      remove_leftovers();
-      file.emplace(options_.folder / "run.h5", "meltproof run");
-      write_facts(*file, t_, *engine_, made_);
-    }
-    ArtifactWriter* const writer = file ? &*file : nullptr;
-    if (restarted_) {
-      if (writer != nullptr) {
-        checkpoints_.restore_snapshots(*writer, run_.snapshots);
-      }
-    } else {
+    if (!restarted_) {
       run_.lines = {measure(*engine_, reference_, run_.start_enthalpy)};
       run_.history = 1;
-      write_snapshot(writer, run_.snapshots++, *engine_);
+      take_snapshot();
     }
     {
       const StopRequest stop;
       Progress progress(options_.name, t_.exposure, std::min(engine_->time(), t_.exposure));
       spanned_ = engine_->time();
       span_began_ = seconds();
-      while (engine_->time() < end() && advance(writer, stop, progress)) {
+      while (engine_->time() < end() && advance(stop, progress)) {
       }
     }
-    return finish(writer);
+    return finish();
   }
 
  private:
-  /// What runs that were killed here left of run.h5.
-  void remove_leftovers() const {
-    std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(options_.folder, none)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with(".run.") && name.ends_with(".tmp.h5")) {
-        std::filesystem::remove(entry.path(), none);
-      }
-    }
-  }
-
   std::size_t particle_count() const {
     const auto& home = engine_->particles().home;
     return ranks_.add(static_cast<std::uint64_t>(std::count(home.begin(), home.end(), Home::here)));
@@ -137,9 +92,7 @@ class TrackRun {
       }
     }
     if (!restarted_) {
-      if (ranks_.root()) {
-        checkpoints_.clear();
-      }
+      checkpoints_.clear();
       engine_.emplace(std::move(made_.particles), mixture_, diffusivity, model, ranks_);
       run_.start_enthalpy = engine_->total_enthalpy();
       run_.start_additive = engine_->total_additive_mass();
@@ -154,7 +107,7 @@ class TrackRun {
 
   /// To the next line of the history, snapshot, or the moment at which the beam goes off.
   /// @returns whether there is anything left to happen.
-  bool advance(ArtifactWriter* writer, const StopRequest& stop, Progress& progress) {
+  bool advance(const StopRequest& stop, Progress& progress) {
     const double next_line = static_cast<double>(run_.history) * t_.history_interval;
     const double next_frame = static_cast<double>(run_.snapshots) / t_.frame_rate;
     double until = std::min({next_line, end(), next_frame < t_.exposure ? next_frame : end()});
@@ -163,7 +116,7 @@ class TrackRun {
     while (engine_->time() < until) {
       dt = step(until);
       if (engine_->time() < until) {
-        save_if_due(writer, stop);
+        save_if_due(stop);
       }
     }
     bool goes_on = true;
@@ -171,10 +124,10 @@ class TrackRun {
       goes_on = note(dt, engine_->time() == next_line, progress);
     }
     if (engine_->time() == next_frame && next_frame < t_.exposure) {
-      write_snapshot(writer, run_.snapshots++, *engine_);
+      take_snapshot();
     }
     if (goes_on) {
-      save_if_due(writer, stop);
+      save_if_due(stop);
     }
     return goes_on;
   }
@@ -184,13 +137,11 @@ class TrackRun {
     try {
       dt = engine_->step(until);
     } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(fmt::format(
-          "{}; {}", problem.what(),
-          !checkpoints_.last().empty()
-              ? "the last good checkpoint is " + checkpoints_.last().string()
-          : checkpoint_written_
-              ? "the last good checkpoint is the newest in " + checkpoints_.folder().string()
-              : "no checkpoint had been written (see --checkpoint-every)"));
+      throw std::runtime_error(
+          fmt::format("{}; {}", problem.what(),
+                      checkpoints_.last().empty()
+                          ? "no checkpoint had been written (see --checkpoint-every)"
+                          : "the last good checkpoint is " + checkpoints_.last().string()));
     }
     const LaserBudget& beam = engine_->beam();
     if (engine_->time() <= t_.exposure) {
@@ -240,7 +191,28 @@ class TrackRun {
            (!engine_->model().flow && ranks_.any(now.pool.found || now.any_liquid.found));
   }
 
-  void save_if_due(const ArtifactWriter* writer, const StopRequest& stop) {
+  /// Writes something; should that fail, says what there is to go on from.
+  template <class Write>
+  void keep(const Write& write) const {
+    try {
+      write();
+    } catch (const InputError&) {
+      throw;  // nothing that room would cure
+    } catch (const std::runtime_error& problem) {
+      throw std::runtime_error(
+          fmt::format("{}; {}; make room and use --restart", problem.what(),
+                      checkpoints_.last().empty()
+                          ? "there is no earlier checkpoint"
+                          : "the checkpoint before it stands, " + checkpoints_.last().string()));
+    }
+  }
+
+  void take_snapshot() {
+    keep([&] { checkpoints_.write_snapshot(run_.snapshots, *engine_, provenance_); });
+    ++run_.snapshots;
+  }
+
+  void save_if_due(const StopRequest& stop) {
     const auto now = std::chrono::steady_clock::now();
     const double since = std::chrono::duration<double>(now - written_).count();
     const bool due =
@@ -261,19 +233,7 @@ class TrackRun {
     }
     run_.wall_time = seconds();
     std::filesystem::path place;
-    const EngineState state = engine_->state();
-    try {
-      if (writer != nullptr) {
-        place = checkpoints_.write(state, run_, *writer, provenance_);
-      }
-    } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(
-          fmt::format("{}; {}; make room and use --restart", problem.what(),
-                      checkpoints_.last().empty()
-                          ? "there is no earlier checkpoint"
-                          : "the one before it stands, " + checkpoints_.last().string()));
-    }
-    checkpoint_written_ = true;
+    keep([&] { place = checkpoints_.write(*engine_, run_, provenance_); });
     written_ = std::chrono::steady_clock::now();
     if (stopping) {
       throw Stopped(
@@ -284,11 +244,11 @@ class TrackRun {
     }
   }
 
-  nlohmann::json finish(ArtifactWriter* writer) {
+  nlohmann::json finish() {
     spdlog::info("{} thermal and {} flow steps, {} list builds", engine_->steps(),
                  engine_->flow_steps(), engine_->list_builds());
     // The last snapshot is the solidified track.
-    write_snapshot(writer, run_.snapshots++, *engine_);
+    take_snapshot();
     const Whole whole(*engine_);
     Acceptance acceptance;
     if (ranks_.root()) {
@@ -301,18 +261,14 @@ class TrackRun {
     }
     provenance_.wall_time = run_.wall_time = seconds();
     nlohmann::json result = track_result(t_, made_, *engine_, run_, whole.particles(), acceptance);
-    if (writer == nullptr) {
-      return result;
-    }
     result["case"] = options_.name;
     result["provenance"] = provenance_.json();
-    writer->commit(provenance_);
-    write_xdmf(options_.folder / "run.h5");
-    write_file(options_.folder / "history.csv", history_csv(run_.lines));
-    write_file(options_.folder / "input.toml", provenance_.resolved_input);
-    write_file(options_.folder / "result.json", result.dump(2) + "\n");
+    keep([&] {
+      write_track_files(options_.folder, t_, *engine_, made_, checkpoints_, run_, provenance_,
+                        result);
+    });
     checkpoints_.clear();
-    if (!options_.quiet) {
+    if (!options_.quiet && ranks_.root()) {
       print_run_summary(result, acceptance, step_timings(*engine_), provenance_, options_.folder);
     }
     return result;
@@ -332,8 +288,7 @@ class TrackRun {
   std::optional<Engine> engine_;
   RunProgress run_;
   bool restarted_ = false;
-  bool checkpoint_written_ = false;  // by the root, which alone knows its name
-  double earlier_ = 0;               // s, of the parts of the run before this one
+  double earlier_ = 0;  // s, of the parts of the run before this one
   std::chrono::steady_clock::time_point begun_, written_;
 };
 

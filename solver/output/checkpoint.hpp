@@ -11,7 +11,7 @@
 #include "base/provenance.hpp"
 #include "solver/output/acceptance.hpp"
 #include "solver/output/history.hpp"
-#include "solver/step/engine_state.hpp"
+#include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
 
@@ -31,31 +31,35 @@ struct RunProgress {
 /// A run between two steps.
 struct Checkpoint {
   std::filesystem::path file;
-  EngineState engine;
+  EngineState engine;  ///< of several ranks each holds a part
   RunProgress run;
 };
 
 /// The folder `checkpoints` beside run.h5: the last two checkpoints, each a file that is there
-/// whole or not at all and holds a SHA-256 of every field, and the snapshots that run.h5 will take
-/// in.
+/// whole or not at all and holds a checksum of every field, and the snapshots that run.h5 is put
+/// together from. All ranks call everything here together, and what fails on one of them fails on
+/// all.
 class CheckpointFolder {
  public:
   /// @param run_folder where run.h5 goes. Nothing is made before something is written.
-  explicit CheckpointFolder(const std::filesystem::path& run_folder);
+  CheckpointFolder(const std::filesystem::path& run_folder, const Ranks& ranks);
 
-  /// Writes the state, and those snapshots of `snapshots` (groups snapshots/0000 and on) that are
-  /// not in the folder yet. Older checkpoints than the one before go. @returns its file.
+  /// Writes the state; older checkpoints than the one before go. @returns its file.
   /// @throws std::runtime_error with a sentence if the disk is full; the former one stays.
-  std::filesystem::path write(const EngineState& engine, const RunProgress& run,
-                              const ArtifactWriter& snapshots, const Provenance& provenance);
+  std::filesystem::path write(const Engine& engine, const RunProgress& run,
+                              const Provenance& provenance);
+  /// Writes a snapshot of the present state. @throws likewise.
+  void write_snapshot(std::size_t number, const Engine& engine, const Provenance& provenance);
 
   /// The newest checkpoint whose fields have the checksums that it names; damaged ones are passed
   /// over with a warning. None: no run was under way here.
-  /// @throws InputError if it was made with another input or by another revision of the code.
+  /// @throws InputError if it was made with another input or by another revision of the code, or if
+  /// a snapshot that its run had written is missing.
   std::optional<Checkpoint> newest(const Provenance& provenance) const;
 
-  /// Copies the first `count` snapshots into run.h5. @throws InputError if one is missing.
-  void restore_snapshots(ArtifactWriter& writer, std::size_t count) const;
+  /// Copies the first `count` snapshots into run.h5, which the root alone writes: a chunk at a
+  /// time, so it needs no memory to speak of. @param run_file of the root; null elsewhere.
+  void copy_snapshots(ArtifactWriter* run_file, std::size_t count) const;
 
   /// The run is complete, or begins anew: removes what this class wrote, and nothing else.
   void clear() const;
@@ -66,8 +70,10 @@ class CheckpointFolder {
 
  private:
   std::vector<std::filesystem::path> files(const std::string& prefix) const;
+  std::filesystem::path snapshot(std::size_t number) const;
 
   std::filesystem::path folder_;
+  Ranks ranks_;
   mutable std::filesystem::path last_;
 };
 

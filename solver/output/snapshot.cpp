@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "solver/output/whole.hpp"
+#include "solver/parallel/shared_artifact.hpp"
+#include "solver/parallel/shared_rows.hpp"
 
 namespace meltproof::solver {
 namespace {
@@ -35,105 +35,113 @@ constexpr std::array fields{
                   "magnitude of the temperature gradient at freeze_time", float32, 1},
 };
 
-/// Writes fields of one snapshot, taking values by particle index in the order of identities.
-class SnapshotWriter {
- public:
-  SnapshotWriter(ArtifactWriter& writer, std::string group, const Particles& p)
-      : writer_(writer), group_(std::move(group)), order_(p.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    std::sort(order_.begin(), order_.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return p.identity[a] < p.identity[b]; });
-  }
-
-  /// value(i) of the particles; a Vector for three components.
-  template <class Value>
-  void write(const std::string& name, const Value& value) {
-    const auto field = std::find_if(fields.begin(), fields.end(),
+/// The fields of one state: visit(field, value), where value(i) is entry i's. Vectors have three
+/// components.
+template <class Visit>
+void each_value(const Engine& engine, const Visit& visit) {
+  const Particles& p = engine.particles();
+  const auto of = [](const auto& values) {
+    return [&values](std::uint32_t i) { return values[i]; };
+  };
+  const auto field = [](const std::string& name) -> const SnapshotField& {
+    const auto found = std::find_if(fields.begin(), fields.end(),
                                     [&](const SnapshotField& f) { return name == f.name; });
-    if (field == fields.end()) {
+    if (found == fields.end()) {
       throw std::logic_error("no field of a snapshot is called " + name);
     }
-    switch (field->type) {
-      case float32:
-        return store<float>(*field, value);
-      case float64:
-        return store<double>(*field, value);
-      case int32:
-        return store<std::int32_t>(*field, value);
-      case int64:
-        return store<std::int64_t>(*field, value);
-      case uint8:
-        return store<std::uint8_t>(*field, value);
-    }
+    return *found;
+  };
+  visit(field("position"), of(p.position));
+  visit(field("identity"), of(p.identity));
+  visit(field("temperature"), of(p.temperature));
+  visit(field("peak_temperature"), of(p.peak_temperature));
+  visit(field("concentration"), of(p.concentration));
+  visit(field("liquid_fraction"), of(p.liquid_fraction));
+  visit(field("origin"), of(p.origin));
+  visit(field("melted"), of(p.melted));
+  visit(field("phase"), of(p.phase));
+  visit(field("velocity"), of(p.velocity));
+  visit(field("density"), of(p.density));
+  visit(field("melt_time"), of(p.melt_time));
+  visit(field("freeze_time"), of(p.freeze_time));
+  visit(field("cooling_rate"), of(p.cooling_rate));
+  visit(field("freeze_gradient"), of(p.freeze_gradient));
+  if (engine.model().flow) {
+    visit(field("pressure"), [&](std::uint32_t i) {
+      return p.phase[i] == Phase::liquid ? engine.flow().pressure(i) : 0.0;
+    });
   }
+}
 
- private:
-  template <class T, class Value>
-  void store(const SnapshotField& field, const Value& value) {
-    std::vector<T> data;
-    data.reserve(field.components * order_.size());
-    for (const std::uint32_t i : order_) {
-      if constexpr (std::is_same_v<std::decay_t<decltype(value(i))>, Vector>) {
-        for (const double x : value(i)) {
-          data.push_back(static_cast<T>(x));
-        }
-      } else {
-        data.push_back(static_cast<T>(value(i)));
-      }
-    }
-    std::vector<std::size_t> shape{order_.size()};
-    if (field.components > 1) {
-      shape.push_back(field.components);
-    }
-    writer_.write(group_ + field.name, std::span<const T>(data), shape, field.units,
-                  field.description);
+/// Calls act(T{}) with the number type of a field.
+template <class Act>
+void with_type(const SnapshotField& field, const Act& act) {
+  switch (field.type) {
+    case float32:
+      return act(float{});
+    case float64:
+      return act(double{});
+    case int32:
+      return act(std::int32_t{});
+    case int64:
+      return act(std::int64_t{});
+    case uint8:
+      return act(std::uint8_t{});
   }
-
-  ArtifactWriter& writer_;
-  std::string group_;
-  std::vector<std::uint32_t> order_;
-};
+}
 
 }  // namespace
 
 std::span<const SnapshotField> snapshot_fields() { return fields; }
 
-void write_snapshot(ArtifactWriter* file, std::size_t number, const Engine& engine) {
-  const Whole whole(engine);
-  if (file == nullptr) {
-    return;
+std::string snapshot_group(std::size_t number) { return fmt::format("snapshots/{:04}", number); }
+
+void write_snapshot(const std::filesystem::path& place, std::size_t number, const Engine& engine,
+                    const Provenance& provenance) {
+  const Particles& p = engine.particles();
+  std::vector<std::uint32_t> own;
+  double largest = -1;
+  for (std::uint32_t i = 0; i < p.size(); ++i) {
+    if (p.home[i] == Home::here) {
+      own.push_back(i);
+      largest = std::max(largest, static_cast<double>(p.identity[i]));
+    }
   }
-  ArtifactWriter& writer = *file;
-  const Particles& p = whole.particles();
-  const std::string group = fmt::format("snapshots/{:04}/", number);
-  const Vector beam{engine.model().laser ? engine.model().laser->x(engine.time()) : 0, 0, 0};
-  writer.write(group + "time", engine.time(), "s", "since the beam went on");
-  writer.write(group + "beam", std::span<const double>(beam), {3}, "m",
-               "where the beam meets the plate's plane");
-  SnapshotWriter to(writer, group, p);
-  const auto of = [](const auto& values) {
-    return [&values](std::uint32_t i) { return values[i]; };
-  };
-  to.write("position", of(p.position));
-  to.write("identity", of(p.identity));
-  to.write("temperature", of(p.temperature));
-  to.write("peak_temperature", of(p.peak_temperature));
-  to.write("concentration", of(p.concentration));
-  to.write("liquid_fraction", of(p.liquid_fraction));
-  to.write("origin", of(p.origin));
-  to.write("melted", of(p.melted));
-  to.write("phase", of(p.phase));
-  to.write("velocity", of(p.velocity));
-  to.write("density", of(p.density));
-  to.write("melt_time", of(p.melt_time));
-  to.write("freeze_time", of(p.freeze_time));
-  to.write("cooling_rate", of(p.cooling_rate));
-  to.write("freeze_gradient", of(p.freeze_gradient));
-  if (!whole.pressure().empty()) {
-    to.write("pressure", [&](std::uint32_t i) {
-      return p.phase[i] == Phase::liquid ? whole.pressure()[i] : 0.0;
+  const auto range = static_cast<std::size_t>(engine.ranks().largest(largest) + 1);
+  const SharedRows rows(engine.ranks(), p.identity, std::move(own), range);
+  const std::string group = snapshot_group(number) + "/";
+  SharedArtifact file(
+      engine.ranks(), place, "meltproof snapshot",
+      [&](ArtifactWriter& writer) {
+        const Vector beam{engine.model().laser ? engine.model().laser->x(engine.time()) : 0, 0, 0};
+        writer.write(group + "time", engine.time(), "s", "since the beam went on");
+        writer.write(group + "beam", std::span<const double>(beam), {3}, "m",
+                     "where the beam meets the plate's plane");
+        each_value(engine, [&](const SnapshotField& field, const auto&) {
+          std::vector<std::size_t> shape{rows.total()};
+          if (field.components > 1) {
+            shape.push_back(field.components);
+          }
+          with_type(field, [&]<class T>(T) {
+            writer.reserve<T>(group + field.name, shape, field.units, field.description);
+          });
+        });
+      },
+      provenance);
+  each_value(engine, [&](const SnapshotField& field, const auto& value) {
+    with_type(field, [&]<class T>(T) {
+      const std::vector<T> part = rows.bring<T>(field.components, [&](std::uint32_t i, T* out) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value(i))>, Vector>) {
+          const Vector v = value(i);
+          std::transform(v.begin(), v.end(), out, [](double x) { return static_cast<T>(x); });
+        } else {
+          *out = static_cast<T>(value(i));
+        }
+      });
+      file.write<T>(group + field.name, rows.first(), part);
     });
-  }
+  });
+  file.commit();
 }
 
 }  // namespace meltproof::solver

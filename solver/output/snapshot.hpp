@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -27,9 +28,14 @@ struct SnapshotField {
 /// only: pressure. What has never melted has times of -1, what has never frozen again no rate.
 std::span<const SnapshotField> snapshot_fields();
 
-/// Writes the particles of the present moment into the group snapshots/<number, four digits>,
-/// ordered by identity, so that a snapshot does not depend on how the engine keeps its particles.
-/// Collective. @param writer null on all ranks but the root.
-void write_snapshot(ArtifactWriter* writer, std::size_t number, const Engine& engine);
+/// "snapshots/<number, four digits>".
+std::string snapshot_group(std::size_t number);
+
+/// Writes the particles of the present moment into a file of their own, in the group of that
+/// number, ordered by identity, so that a snapshot does not depend on how the engine keeps its
+/// particles: all ranks together, each its part of the identities. Nothing is compressed there.
+/// Collective. @throws on all ranks as SharedArtifact.
+void write_snapshot(const std::filesystem::path& place, std::size_t number, const Engine& engine,
+                    const Provenance& provenance);
 
 }  // namespace meltproof::solver

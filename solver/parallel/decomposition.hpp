@@ -27,6 +27,9 @@ class Decomposition {
   /// parts, so each part of its own is to be spread evenly.
   using Cost = std::array<double, 3>;
 
+  /// Before anything has been measured: the melt and what surrounds it costs by far the most.
+  static Cost cost_at_first(Phase phase) { return {1, 1, phase == Phase::liquid ? 50.0 : 0.0}; }
+
   /// Makes new boxes, collectively. @param positions of particles of this rank, m, each particle on
   /// one rank. @returns what a step takes over what it would with all parts spread evenly.
   /// @throws std::runtime_error if Zoltan could not.

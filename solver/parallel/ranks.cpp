@@ -45,7 +45,8 @@ MpiSession::~MpiSession() {
 }
 
 void MpiSession::give_up(int status) const {
-  if (running() && Ranks::world().size() > 1) {
+  // With a single rank, too: MPI's end would have HDF5 write what a full disk left with it.
+  if (running()) {
     MPI_Abort(MPI_COMM_WORLD, status);
   }
 }
@@ -108,6 +109,31 @@ std::uint64_t Ranks::add(std::uint64_t count) const {
   return count;
 }
 
+std::uint64_t Ranks::before(std::uint64_t count) const {
+  std::uint64_t sum = 0;  // what MPI leaves as it is on the first rank
+  if (!alone()) {
+    MPI_Exscan(&count, &sum, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+  }
+  return root() ? 0 : sum;
+}
+
+std::string Ranks::said(const std::string& own) const {
+  if (alone()) {
+    return own;
+  }
+  int first = own.empty() ? size_ : rank_;
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  if (first == size_) {
+    return "";
+  }
+  auto length = static_cast<std::uint64_t>(own.size());
+  MPI_Bcast(&length, 1, MPI_UINT64_T, first, MPI_COMM_WORLD);
+  std::string text = own;
+  text.resize(length);
+  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, first, MPI_COMM_WORLD);
+  return text;
+}
+
 void Ranks::largest(std::span<std::uint8_t> flags) const {
   if (!alone()) {
     MPI_Allreduce(MPI_IN_PLACE, flags.data(), static_cast<int>(flags.size()), MPI_UINT8_T, MPI_MAX,
@@ -119,6 +145,19 @@ void Ranks::meet() const {
   if (!alone()) {
     MPI_Barrier(MPI_COMM_WORLD);
   }
+}
+
+void Ranks::exchange_rows(const void* from, std::span<const int> counts, void* to,
+                          std::span<const int> arriving, std::size_t bytes) const {
+  std::vector<int> leaves_at(counts.size(), 0), arrives_at(counts.size(), 0);
+  std::partial_sum(counts.begin(), counts.end() - 1, leaves_at.begin() + 1);
+  std::partial_sum(arriving.begin(), arriving.end() - 1, arrives_at.begin() + 1);
+  MPI_Datatype row = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &row);
+  MPI_Type_commit(&row);
+  MPI_Alltoallv(from, counts.data(), leaves_at.data(), row, to, arriving.data(), arrives_at.data(),
+                row, MPI_COMM_WORLD);
+  MPI_Type_free(&row);
 }
 
 std::vector<std::size_t> Ranks::exchange_sizes(const std::vector<std::size_t>& sizes) const {

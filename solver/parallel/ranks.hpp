@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -22,8 +23,8 @@ class MpiSession {
   MpiSession& operator=(const MpiSession&) = delete;
   /// @throws InputError if srun started several processes of which each believes to be alone.
   static void check();
-  /// Ends all processes at once, after a failure of this one that the others do not know of; does
-  /// nothing where the program is alone.
+  /// Ends all processes at once, after a failure of this one that the others may not know of; does
+  /// nothing where MPI was not started.
   void give_up(int status) const;
 };
 
@@ -52,8 +53,12 @@ class Ranks {
   void add(ExactSum& sum) const;
   void add(std::span<std::uint64_t> counts) const;
   std::uint64_t add(std::uint64_t count) const;
+  /// The sum of the counts of the ranks before this one.
+  std::uint64_t before(std::uint64_t count) const;
   /// Per entry the largest of all ranks'.
   void largest(std::span<std::uint8_t> flags) const;
+  /// What the first rank that says anything says, on all of them; "" if none does.
+  std::string said(const std::string& own) const;
 
   /// Gives to[r] to rank r; returns what the ranks gave to this one, joined in the order of ranks.
   template <class T>
@@ -91,6 +96,10 @@ class Ranks {
   }
   /// Returns once all ranks have called it.
   void meet() const;
+  /// Gives rows of `bytes` each to the ranks, counts[r] of them to rank r, and takes arriving[r] of
+  /// it; both stand in the order of ranks.
+  void exchange_rows(const void* from, std::span<const int> counts, void* to,
+                     std::span<const int> arriving, std::size_t bytes) const;
 
  private:
   std::vector<std::size_t> exchange_sizes(const std::vector<std::size_t>& sizes) const;

@@ -79,7 +79,8 @@ class Engine {
          const Ranks& ranks = {});
   /// Goes on from a state of an engine with the same mixture, diffusivity and model: every later
   /// number is the one that engine would have found, on as many ranks as may be. Not with gas
-  /// around the metal. @param state the same on all ranks.
+  /// around the metal. @param state whole, in any order; of several ranks each gives a part of it,
+  /// every particle on one of them.
   Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model,
          const Ranks& ranks = {});
   /// The present state, between two steps; of several ranks, of all on the root and of none
@@ -87,6 +88,10 @@ class Engine {
   EngineState state() const { return state(false); }
   /// The same on all ranks (collective).
   EngineState state_everywhere() const { return state(true); }
+  /// What of state() is not of single particles, on all ranks (collective), and this rank's part of
+  /// what is.
+  EngineState state_numbers() const;
+  StateView state_view() const;
 
   /// Advances by the smallest limit, but not beyond `until` (s). Returns the step taken, s.
   /// Collective. @throws std::runtime_error naming particle and term if a number is no longer one.
@@ -192,6 +197,7 @@ class Engine {
   double copy_reach() const;
   void check_ranks() const;
   std::vector<std::uint32_t> divide(const std::vector<Vector>& at);
+  void take_part(EngineState& state);
   void divide_anew(bool sort);
   bool out_of_balance();
   std::array<std::uint64_t, 3> workload() const;

@@ -46,9 +46,6 @@ void Engine::check_ranks() const {
   if (model_.surface_conduction) {
     refuse("physics.surface_conduction = true");
   }
-  if (model_.laser && model_.laser->reflections) {
-    refuse("laser.absorption = \"ray_traced\"");
-  }
   for (const auto& faces : model_.domain.face) {
     for (const Face face : faces) {
       if (face != Face::open) {
@@ -65,10 +62,9 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   const auto size = static_cast<std::size_t>(ranks.size()),
              own = static_cast<std::size_t>(ranks.rank());
   const std::size_t n = particles_.size(), begin = n * own / size, end = n * (own + 1) / size;
-  // The melt and what surrounds it costs by far the most; nothing has been measured yet.
   std::vector<Decomposition::Cost> costs;
   for (std::size_t i = begin; i < end; ++i) {
-    costs.push_back({1, 1, particles_.phase[i] == Phase::liquid ? 50.0 : 0.0});
+    costs.push_back(Decomposition::cost_at_first(particles_.phase[i]));
   }
   decomposition_.balance(std::span(at).subspan(begin, end - begin), costs);
   std::vector<std::uint32_t> kept;
@@ -158,32 +154,13 @@ void Engine::set_peers(std::vector<Halo::Peer> all) {
 }
 
 Traveller Engine::pack(std::uint32_t i) const {
-  const Particles& p = particles_;
   Traveller t{};
-  t.identity = p.identity[i];
-  t.order = p.order[i];
-  t.position = p.position[i];
-  t.velocity = p.velocity[i];
-  t.mass = p.mass[i];
-  t.volume = p.volume[i];
-  t.density = p.density[i];
-  t.enthalpy = p.enthalpy[i];
-  t.concentration = p.concentration[i];
-  t.temperature = p.temperature[i];
-  t.liquid_fraction = p.liquid_fraction[i];
-  t.peak_temperature = p.peak_temperature[i];
-  t.melt_time = p.melt_time[i];
-  t.freeze_time = p.freeze_time[i];
-  t.cooling_rate = p.cooling_rate[i];
-  t.freeze_gradient = p.freeze_gradient[i];
+  t.read(particles_, i);
   t.listed_at = listed_at(i);
   if (flow_) {
     t.flow = flow_->particle(i);
   }
-  t.origin = p.origin[i];
   t.rank = halo_->ranks().rank();
-  t.phase = p.phase[i];
-  t.melted = p.melted[i];
   t.mobile = mobile_[i];
   t.fast = fast_[i];
   t.slow_power = slow_power_[i];

@@ -10,6 +10,16 @@
 namespace meltproof::solver {
 namespace {
 
+void remember(FlowMemory& memory, const FlowParticle& particle) {
+  memory.acceleration.push_back(particle.acceleration);
+  memory.shift.push_back(particle.shift);
+  memory.area.push_back(particle.exposed);
+  memory.pressure.push_back(particle.pressure);
+  memory.viscosity.push_back(particle.properties.viscosity);
+  memory.surface_tension.push_back(particle.properties.surface_tension);
+  memory.recoil.push_back(particle.properties.recoil);
+}
+
 /// The arrays of a state from what each rank sent of its particles.
 void write_particles(EngineState& state, const std::vector<Traveller>& all) {
   Particles& p = state.particles;
@@ -24,53 +34,126 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
     state.fast.push_back(t.fast);
     state.slow_power.push_back(t.slow_power);
     if (t.phase == Phase::liquid) {
-      state.flow.acceleration.push_back(t.flow.acceleration);
-      state.flow.shift.push_back(t.flow.shift);
-      state.flow.area.push_back(t.flow.exposed);
-      state.flow.pressure.push_back(t.flow.pressure);
-      state.flow.viscosity.push_back(t.flow.properties.viscosity);
-      state.flow.surface_tension.push_back(t.flow.properties.surface_tension);
-      state.flow.recoil.push_back(t.flow.properties.recoil);
+      remember(state.flow, t.flow);
     }
   }
 }
 
-/// The entries of a flow's memory that belong to the melt of this rank.
-/// @param phases of all particles; @param kept those that this rank keeps of them; @param home of
-/// these.
-FlowMemory part_of(const FlowMemory& memory, const std::vector<Phase>& phases,
-                   const std::vector<std::uint32_t>& kept, const std::vector<Home>& home) {
-  std::vector<std::size_t> place(phases.size(), 0);
-  std::size_t count = 0;
+template <class T>
+void permute(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
+  if (!values.empty()) {
+    std::vector<T> sorted;
+    sorted.reserve(order.size());
+    for (const std::uint32_t i : order) {
+      sorted.push_back(values[i]);
+    }
+    values = std::move(sorted);
+  }
+}
+
+template <class Visit>
+void each_array(FlowMemory& m, const Visit& visit) {
+  visit(m.acceleration);
+  visit(m.shift);
+  visit(m.area);
+  visit(m.pressure);
+  visit(m.viscosity);
+  visit(m.surface_tension);
+  visit(m.recoil);
+}
+
+/// Per particle its entry in a flow's memory, which holds the liquid ones.
+std::vector<std::uint32_t> places_in_flow(const std::vector<Phase>& phases) {
+  std::vector<std::uint32_t> place(phases.size(), 0);
+  std::uint32_t count = 0;
   for (std::size_t i = 0; i < phases.size(); ++i) {
     place[i] = count;
     count += phases[i] == Phase::liquid ? 1 : 0;
   }
-  FlowMemory part;
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    if (home[k] == Home::here && phases[kept[k]] == Phase::liquid) {
-      const std::size_t at = place[kept[k]];
-      part.acceleration.push_back(memory.acceleration[at]);
-      part.shift.push_back(memory.shift[at]);
-      part.area.push_back(memory.area[at]);
-      part.pressure.push_back(memory.pressure[at]);
-      part.viscosity.push_back(memory.viscosity[at]);
-      part.surface_tension.push_back(memory.surface_tension[at]);
-      part.recoil.push_back(memory.recoil[at]);
+  return place;
+}
+
+/// Puts a state in the engine's order, which sums follow.
+EngineState& in_order(EngineState& state) {
+  Particles& p = state.particles;
+  std::vector<std::uint32_t> order(p.size()), liquid;
+  std::iota(order.begin(), order.end(), 0U);
+  const auto before = [&](std::uint32_t a, std::uint32_t b) { return p.before(a, b); };
+  if (std::is_sorted(order.begin(), order.end(), before)) {
+    return state;
+  }
+  std::sort(order.begin(), order.end(), before);
+  const std::vector<std::uint32_t> place = places_in_flow(p.phase);
+  for (const std::uint32_t i : order) {
+    if (p.phase[i] == Phase::liquid) {
+      liquid.push_back(place[i]);
     }
   }
-  return part;
+  p.each_array([&](auto& values) { permute(values, order); });
+  permute(state.listed_at, order);
+  permute(state.mobile, order);
+  permute(state.fast, order);
+  permute(state.slow_power, order);
+  each_array(state.flow, [&](auto& values) { permute(values, liquid); });
+  return state;
+}
+
+/// Particle i of a state. @param in_flow its place in the flow's memory.
+Traveller traveller(const EngineState& state, const Particles& p, std::size_t i,
+                    std::uint32_t in_flow) {
+  Traveller t{};
+  t.read(p, i);
+  t.listed_at = state.listed_at[i];
+  t.mobile = state.mobile[i];
+  t.fast = state.fast[i];
+  t.slow_power = state.slow_power[i];
+  if (p.phase[i] == Phase::liquid && !state.flow.area.empty()) {
+    const FlowMemory& m = state.flow;
+    t.flow.acceleration = m.acceleration[in_flow];
+    t.flow.shift = m.shift[in_flow];
+    t.flow.exposed = m.area[in_flow];
+    t.flow.pressure = m.pressure[in_flow];
+    t.flow.properties = {m.viscosity[in_flow], m.surface_tension[in_flow], m.recoil[in_flow]};
+  }
+  return t;
+}
+
+/// Sends the particles of a part of a state to their owners, and to those that keep copies of them.
+/// Whose a particle is follows from where it was when the lists were made. A little at a time, so
+/// that what is under way needs no memory to speak of.
+/// @returns what belongs to this rank or is copied here, in the engine's order; Traveller::rank is
+/// the owner.
+std::vector<Traveller> share_out(const EngineState& state, const Particles& p, const Ranks& ranks,
+                                 const Decomposition& decomposition, double reach) {
+  constexpr std::size_t at_a_time = 8192;
+  const std::vector<std::uint32_t> place = places_in_flow(p.phase);
+  const auto most = static_cast<std::size_t>(ranks.largest(static_cast<double>(p.size())));
+  std::vector<Traveller> found;
+  std::vector<int> near;
+  for (std::size_t begin = 0; begin < most; begin += at_a_time) {
+    std::vector<std::vector<Traveller>> to(static_cast<std::size_t>(ranks.size()));
+    for (std::size_t i = begin; i < std::min(p.size(), begin + at_a_time); ++i) {
+      Traveller t = traveller(state, p, i, place[i]);
+      t.rank = decomposition.owner(t.listed_at);
+      decomposition.near(t.listed_at, reach, near);
+      if (std::find(near.begin(), near.end(), t.rank) == near.end()) {
+        near.push_back(t.rank);
+      }
+      for (const int r : near) {
+        to[static_cast<std::size_t>(r)].push_back(t);
+      }
+    }
+    const std::vector<Traveller> arrived = ranks.exchange(to);
+    found.insert(found.end(), arrived.begin(), arrived.end());
+  }
+  std::sort(found.begin(), found.end(), comes_before);
+  return found;
 }
 
 }  // namespace
 
 EngineState Engine::state(bool everywhere) const {
-  if (gas_) {
-    throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
-  }
-  EngineState state;
-  state.particles.spacing = particles_.spacing;
-  state.particles.dimensions = particles_.dimensions;
+  EngineState state = state_numbers();
   if (ranks().alone()) {
     state.particles = particles_;
     state.listed_at = particles_.position;
@@ -86,6 +169,16 @@ EngineState Engine::state(bool everywhere) const {
   } else {
     write_particles(state, gather({}, everywhere));
   }
+  return state;
+}
+
+EngineState Engine::state_numbers() const {
+  if (gas_) {
+    throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
+  }
+  EngineState state;
+  state.particles.spacing = particles_.spacing;
+  state.particles.dimensions = particles_.dimensions;
   state.limiters = limiters();
   state.ledger = ledger_;
   state.limits = limits_;
@@ -101,6 +194,20 @@ EngineState Engine::state(bool everywhere) const {
   return state;
 }
 
+StateView Engine::state_view() const {
+  StateView view{particles_, {}, mobile_, fast_, slow_power_, {}, {}};
+  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
+    if (particles_.home[i] == Home::here) {
+      view.own.push_back(i);
+    }
+  }
+  view.listed_at = [this](std::uint32_t i) { return listed_at(i); };
+  if (flow_) {
+    view.flow = [this](std::uint32_t i) { return flow_->particle(i); };
+  }
+  return view;
+}
+
 LimiterCounts Engine::limiters() const {
   if (!flow_) {
     return {};
@@ -113,9 +220,45 @@ LimiterCounts Engine::limiters() const {
   return counts;
 }
 
+/// Of the part of a state that was given to this rank, makes the one that belongs to it.
+void Engine::take_part(EngineState& state) {
+  std::vector<Decomposition::Cost> costs;
+  for (const Phase phase : particles_.phase) {
+    costs.push_back(Decomposition::cost_at_first(phase));
+  }
+  decomposition_.balance(state.listed_at, costs);
+  state.mobile = std::move(mobile_);
+  state.fast = std::move(fast_);
+  state.slow_power = std::move(slow_power_);
+  const std::vector<Traveller> all =
+      share_out(state, particles_, ranks(), decomposition_, copy_reach());
+  for (auto* flags : {&mobile_, &fast_}) {
+    flags->assign(all.size(), 0);
+  }
+  slow_power_.assign(all.size(), 0);
+  particles_.each_array([&](auto& values) {
+    values = {};
+    values.resize(all.size());
+  });
+  state.listed_at.resize(all.size());
+  state.flow = {};
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    const Traveller& t = all[i];
+    const bool here = t.rank == ranks().rank();
+    unpack(i, t, here ? Home::here : Home::elsewhere);
+    state.listed_at[i] = t.listed_at;
+    if (here && t.phase == Phase::liquid) {
+      remember(state.flow, t.flow);
+    }
+  }
+  add_free_slots();
+  note_peers(state.listed_at);
+  state.listed_at.resize(particles_.size());  // free entries behind
+}
+
 Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, const Model& model,
                const Ranks& ranks)
-    : particles_(std::move(state.particles)),
+    : particles_(std::move(in_order(state).particles)),
       mixture_(std::move(mixture)),
       diffusivity_law_(std::move(diffusivity)),
       model_(model),
@@ -144,18 +287,10 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
   if (model_.gas) {
     throw std::logic_error("a run with gas around the metal cannot be stopped and continued");
   }
-  std::iota(particles_.order.begin(), particles_.order.end(), 0U);
   times_at_balance_ = times_;
   if (!ranks.alone()) {
     check_ranks();
-    // Whose a particle is follows from where it was when the lists were made.
-    const std::vector<Phase> phases = particles_.phase;
-    const std::vector<std::uint32_t> kept = divide(state.listed_at);
-    std::vector<Vector> listed_at(particles_.size());  // free entries behind
-    std::transform(kept.begin(), kept.end(), listed_at.begin(),
-                   [&](std::uint32_t i) { return state.listed_at[i]; });
-    state.listed_at = std::move(listed_at);
-    state.flow = part_of(state.flow, phases, kept, particles_.home);
+    take_part(state);
     if (!ranks.root()) {
       state.limiters = {};  // counted once
     }

@@ -167,7 +167,7 @@ double Engine::step(double until) {
     beam_ =
         model_.laser->reflections
             ? irradiate_with_reflections(*model_.laser, time_ + dt / 2, surface_, particles_,
-                                         kernel_, absorptivity, source_)
+                                         kernel_, absorptivity, source_, ranks())
             : irradiate(*model_.laser, time_ + dt / 2, surface_, absorptivity, source_, ranks());
   }
   watch.lap(times_.surface);

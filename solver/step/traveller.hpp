@@ -23,6 +23,28 @@ struct alignas(8) Traveller {
   Phase phase;
   std::uint8_t melted, mobile, fast;
 
+  /// From entry i of the arrays.
+  void read(const Particles& p, std::size_t i) {
+    identity = p.identity[i];
+    order = p.order[i];
+    position = p.position[i];
+    velocity = p.velocity[i];
+    mass = p.mass[i];
+    volume = p.volume[i];
+    density = p.density[i];
+    enthalpy = p.enthalpy[i];
+    concentration = p.concentration[i];
+    temperature = p.temperature[i];
+    liquid_fraction = p.liquid_fraction[i];
+    peak_temperature = p.peak_temperature[i];
+    melt_time = p.melt_time[i];
+    freeze_time = p.freeze_time[i];
+    cooling_rate = p.cooling_rate[i];
+    freeze_gradient = p.freeze_gradient[i];
+    origin = p.origin[i];
+    phase = p.phase[i];
+    melted = p.melted[i];
+  }
   /// Into entry i of the arrays, but for its home.
   void write(Particles& p, std::size_t i) const {
     p.identity[i] = identity;

@@ -23,12 +23,14 @@ namespace meltproof::solver {
 /// surface absorbs a, and a groove of n hits 1 - (1 - a)^n. The absorptivity depends on neither
 /// angle nor polarisation: it is the one number that the case gives.
 /// @param columns vertical or slanted as for irradiate(); @param absorptivity of a particle, 1;
-/// @param power per particle in W, added to. One rank only. @returns the budget, as irradiate().
+/// @param power per particle in W, added to; @param ranks that share the metal, collectively: each
+/// follows its share of the rays, and power and budget are the same bits on any number of them.
+/// @returns the budget, as irradiate().
 LaserBudget irradiate_with_reflections(const Laser& laser, double time,
                                        const SurfaceColumns& columns, const Particles& particles,
                                        const QuinticSpline& kernel,
                                        const std::function<double(std::uint32_t)>& absorptivity,
-                                       std::vector<double>& power);
+                                       std::vector<double>& power, const Ranks& ranks = {});
 
 /// Metal reaches this far around a particle for a ray, in spacings: just enough that none slips
 /// between the particles of a simple cubic lattice (1/sqrt(2)).
