@@ -159,11 +159,11 @@ void read_frame(const Source& s, std::size_t index, std::vector<float>& stored) 
   const Handle picture =
       own ? open_set(s.file.get(), s.path, s.pictures[index]) : Handle{H5I_INVALID_HID, &H5Dclose};
   const hid_t set = own ? picture.get() : s.set.get();
-  if (s.axes.frame == std::string::npos && (hdf5_dims(set) != s.dims || !is_written(set)))
+  if (s.axes.frame == no_axis && (hdf5_dims(set) != s.dims || !is_written(set)))
     throw InputError(fmt::format("{}: the array {} was never written whole to the file.",
                                  s.path.string(), own ? s.pictures[index] : s.name));
   std::vector<hsize_t> start(s.dims.size(), 0), count = s.dims;
-  if (s.pictures.empty() && s.axes.frame != std::string::npos) {
+  if (s.pictures.empty() && s.axes.frame != no_axis) {
     start[s.axes.frame] = index;
     count[s.axes.frame] = 1;
   }
@@ -196,7 +196,7 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
   if (names.size() > 1) s->pictures = std::move(names);
   s->set = open_set(s->file.get(), path, s->name);
   s->dims = hdf5_dims(s->set.get());
-  const auto counting = counting_dims(s->dims);
+  const auto counting = counting_dims({s->dims.begin(), s->dims.end()});
   const std::string shape = hdf5_shape_text(s->dims, reversed);
   if ((counting.size() != 3 && counting.size() != 2) ||
       std::count(s->dims.begin(), s->dims.end(), 0))
@@ -204,15 +204,7 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
         "{}: the data set {} has the shape {}; expected three dimensions, frames, rows and columns "
         "in some order.",
         path.string(), s->name, shape.empty() ? "of one value" : shape));
-  std::string axes = options.axes.empty() ? default_axes : options.axes;
-  const ArrayAxes named = parse_array_axes(axes);
-  if (counting.size() == 2) axes.erase(named.frame, 1);
-  if (reversed) std::reverse(axes.begin(), axes.end());
-  const auto axis = [&](char letter) {
-    const auto place = axes.find(letter);
-    return place == std::string::npos ? place : counting[place];
-  };
-  s->axes = {axis('f'), axis('h'), axis('w')};
+  s->axes = place_axes(options.axes.empty() ? default_axes : options.axes, counting, reversed);
 
   RecordingHeader header;
   header.path = path;

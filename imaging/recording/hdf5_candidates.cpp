@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "imaging/recording/array_axes.hpp"
 #include "imaging/recording/array_series.hpp"
 
 namespace meltproof::imaging {
@@ -34,7 +35,7 @@ std::vector<Candidate> find_candidates(hid_t file) {
     const Handle set{H5Dopen2(file, name.c_str(), H5P_DEFAULT), &H5Dclose};
     if (!set.valid() || !hdf5_holds_numbers(set.get())) continue;
     auto dims = hdf5_dims(set.get());
-    const std::size_t counting = counting_dims(dims).size();
+    const std::size_t counting = counting_dims({dims.begin(), dims.end()}).size();
     // MATLAB's scalars and rows have two dimensions as well.
     const hsize_t least = dims.size() == 2 ? 2 : 1;
     if ((counting == 2 || counting == 3) && *std::min_element(dims.begin(), dims.end()) >= least)
@@ -57,13 +58,6 @@ std::vector<hsize_t> hdf5_dims(hid_t set) {
   std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(0, rank)));
   if (rank > 0) H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
   return dims;
-}
-
-std::vector<std::size_t> counting_dims(const std::vector<hsize_t>& dims) {
-  std::vector<std::size_t> counting;
-  for (std::size_t i = 0; i < dims.size(); ++i)
-    if (dims.size() <= 3 || dims[i] != 1) counting.push_back(i);
-  return counting;
 }
 
 std::string hdf5_shape_text(std::vector<hsize_t> dims, bool reversed) {

@@ -14,8 +14,6 @@ namespace meltproof::imaging {
 bool hdf5_holds_numbers(hid_t set);
 /// The shape of a data set as HDF5 stores it.
 std::vector<hsize_t> hdf5_dims(hid_t set);
-/// Which of these dimensions count something: all of two or three; of more, those that are not 1.
-std::vector<std::size_t> counting_dims(const std::vector<hsize_t>& dims);
 /// "5 x 6 x 9", in the order of the file's own language.
 std::string hdf5_shape_text(std::vector<hsize_t> dims, bool reversed);
 

@@ -55,7 +55,8 @@ std::size_t whole_frames(const Source& s, const matvar_t& v, const ByteFile& fil
                          const std::vector<Mat5Element>& elements) {
   double values = 1;
   for (int i = 0; i < v.rank; ++i) values *= static_cast<double>(v.dims[i]);
-  const std::size_t frames = v.rank == 3 ? v.dims[s.axes.frame] : 1;
+  const bool is_stack = s.axes.frame != no_axis;
+  const std::size_t frames = is_stack ? v.dims[s.axes.frame] : 1;
   const std::string name = v.name ? v.name : "";
   const auto named =
       std::find_if(elements.begin(), elements.end(), [&](const auto& e) { return e.name == name; });
@@ -77,11 +78,11 @@ std::size_t whole_frames(const Source& s, const matvar_t& v, const ByteFile& fil
     return frames;
   }
   if (named->data_length <= file.size() - named->data_place) return frames;
-  if (v.rank != 3 || s.axes.frame != 2)
+  if (!is_stack || s.axes.frame < std::max(s.axes.row, s.axes.column))
     refuse(s.path, fmt::format("the variable {} is cut off, and every frame with it; copy the file "
                                "again from its source.",
                                name));
-  const double frame_bytes = size * static_cast<double>(v.dims[0] * v.dims[1]);
+  const double frame_bytes = size * static_cast<double>(v.dims[s.axes.row] * v.dims[s.axes.column]);
   return static_cast<std::size_t>(static_cast<double>(file.size() - named->data_place) /
                                   frame_bytes);
 }
@@ -145,11 +146,13 @@ void read_portion(Source& s, std::size_t index, std::size_t pixels) {
   const std::size_t fitting = std::max<std::size_t>(1, portion_bytes / (pixels * value_size));
   s.first = index;
   // Only with the frames as the slowest index do several of them lie together.
-  s.count = s.axes.frame == 2 ? std::min(fitting, s.frames - index) : 1;
+  const bool is_stack = s.axes.frame != no_axis;
+  const bool slowest = is_stack && s.axes.frame > std::max(s.axes.row, s.axes.column);
+  s.count = slowest ? std::min(fitting, s.frames - index) : 1;
   std::vector<int> start(3, 0), stride(3, 1), edge(3, 1);
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rank); ++i)
     edge[i] = static_cast<int>(v.dims[i]);
-  if (v.rank == 3) {
+  if (is_stack) {
     start[s.axes.frame] = static_cast<int>(index);
     edge[s.axes.frame] = static_cast<int>(s.count);
   }
@@ -194,15 +197,14 @@ Recording open_matlab_5(const fs::path& path, const ReadOptions& options) {
     s->variables = choose_variables(path, s->file.get());
   else
     s->variables = {owned_variable(Mat_VarReadInfo(s->file.get(), options.dataset.c_str()))};
+  if (s->variables[0]) drop_single_dims(*s->variables[0]);
   if (!s->variables[0] || !is_stack_or_picture(*s->variables[0]))
     refuse(path, fmt::format("there is no variable {} of numbers with three dimensions; give the "
                              "name of the frames.",
                              options.dataset));
   const matvar_t& v = *s->variables[0];
-  std::string axes = options.axes.empty() ? "hwf" : options.axes;
-  const ArrayAxes named = parse_array_axes(axes);
-  if (v.rank == 2) axes.erase(named.frame, 1);
-  s->axes = {axes.find('f'), axes.find('h'), axes.find('w')};
+  s->axes = place_axes(options.axes.empty() ? "hwf" : options.axes,
+                       counting_dims({v.dims, v.dims + v.rank}), false);
   RecordingHeader header;
   header.path = path;
   header.height = v.dims[s->axes.row];
@@ -212,7 +214,8 @@ Recording open_matlab_5(const fs::path& path, const ReadOptions& options) {
   if (series) header.frames_lost = keep_whole_pictures(*s, file, elements);
   s->frames = series ? s->variables.size() : whole_frames(*s, v, file, elements);
   header.frames = s->frames;
-  if (!series) header.frames_lost = (v.rank == 3 ? v.dims[s->axes.frame] : 1) - s->frames;
+  if (!series)
+    header.frames_lost = (s->axes.frame != no_axis ? v.dims[s->axes.frame] : 1) - s->frames;
   const auto name = [](const matvar_t& variable) { return variable.name ? variable.name : "?"; };
   header.notes.push_back(fmt::format(
       "The frames are {} of shape {}, taken as {} (frame f, row h, column w); if the "

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "imaging/recording/array_axes.hpp"
 #include "imaging/recording/array_series.hpp"
 
 namespace meltproof::imaging {
@@ -33,17 +34,27 @@ bool holds_numbers(const matvar_t& v) {
   }
 }
 
+std::vector<std::size_t> dims_of(const matvar_t& v) { return {v.dims, v.dims + v.rank}; }
+
 }  // namespace
 
 bool is_stack_or_picture(const matvar_t& v) {
-  const std::vector<std::size_t> dims(v.dims, v.dims + v.rank);
+  const auto dims = dims_of(v);
   const std::size_t least = v.rank == 2 ? 2 : 1;
   return holds_numbers(v) && (v.rank == 2 || v.rank == 3) &&
          *std::min_element(dims.begin(), dims.end()) >= least;
 }
 
+void drop_single_dims(matvar_t& v) {
+  const auto dims = dims_of(v);
+  const auto counting = counting_dims(dims);
+  if (counting.size() != 2 && counting.size() != 3) return;
+  for (std::size_t i = 0; i < counting.size(); ++i) v.dims[i] = dims[counting[i]];
+  v.rank = static_cast<int>(counting.size());
+}
+
 std::string matlab_shape_text(const matvar_t& v) {
-  return fmt::format("{}", fmt::join(std::vector<std::size_t>(v.dims, v.dims + v.rank), " x "));
+  return fmt::format("{}", fmt::join(dims_of(v), " x "));
 }
 
 std::shared_ptr<matvar_t> owned_variable(matvar_t* v) {
@@ -53,8 +64,10 @@ std::shared_ptr<matvar_t> owned_variable(matvar_t* v) {
 std::vector<std::shared_ptr<matvar_t>> choose_variables(const std::filesystem::path& path,
                                                         mat_t* file) {
   std::vector<std::shared_ptr<matvar_t>> found;
-  while (auto v = owned_variable(Mat_VarReadNextInfo(file)))
+  while (auto v = owned_variable(Mat_VarReadNextInfo(file))) {
+    drop_single_dims(*v);
     if (is_stack_or_picture(*v)) found.push_back(v);
+  }
   const auto is_stack = [](const auto& v) { return v->rank == 3; };
   const bool stacks = std::any_of(found.begin(), found.end(), is_stack);
   if (stacks) std::erase_if(found, [&](const auto& v) { return !is_stack(v); });
@@ -64,8 +77,7 @@ std::vector<std::shared_ptr<matvar_t>> choose_variables(const std::filesystem::p
            "there is no variable of numbers with three dimensions in it, which frames would be; "
            "save them as a variable of their own, not inside a struct or cell.");
   std::vector<NamedShape> arrays;
-  for (const auto& v : found)
-    arrays.push_back({v->name ? v->name : "", {v->dims, v->dims + v->rank}});
+  for (const auto& v : found) arrays.push_back({v->name ? v->name : "", dims_of(*v)});
   std::vector<std::shared_ptr<matvar_t>> pictures;
   if (!stacks)
     for (const std::size_t i : picture_series(arrays)) pictures.push_back(found[i]);

@@ -13,6 +13,9 @@ namespace meltproof::imaging {
 
 /// Whether a variable of real numbers has three dimensions, or two that are more than one row.
 bool is_stack_or_picture(const matvar_t& v);
+/// Drops dimensions of one value from a variable that has more than three (see counting_dims()):
+/// matio reads parts of three dimensions as they are, and of four some zeros.
+void drop_single_dims(matvar_t& v);
 /// "480 x 640 x 100".
 std::string matlab_shape_text(const matvar_t& v);
 /// A variable that frees itself.

@@ -54,9 +54,9 @@ std::string sfmov_include();
 std::string irb(const std::vector<Picture>& frames, bool compressed, std::uint32_t period = 20);
 
 /// A MATLAB 5 file with one variable of doubles (single if not `doubles`) values(row, column,
-/// frame), and a scalar before it.
+/// frame), and a scalar before it. `colour`: values(row, column, 1, frame).
 std::string mat5(const std::vector<Picture>& frames, bool compressed, bool big_endian = false,
-                 bool doubles = true);
+                 bool doubles = true, bool colour = false);
 
 /// A classic little-endian TIFF, one page a frame, uncompressed.
 std::string tiff(const std::vector<Picture>& frames);

@@ -195,16 +195,16 @@ std::string mat5_frames(const std::vector<Picture>& frames, bool compressed) {
   return text;
 }
 
-std::string mat5(const std::vector<Picture>& frames, bool compressed, bool big_endian,
-                 bool doubles) {
+std::string mat5(const std::vector<Picture>& frames, bool compressed, bool big_endian, bool doubles,
+                 bool colour) {
   Bytes rate;
   rate.add(9762.5, big_endian);
   const std::string scalar = variable("rate", {1, 1}, true, rate.text, big_endian);
+  std::vector<u32> shape = {static_cast<u32>(frames[0].height), static_cast<u32>(frames[0].width),
+                            static_cast<u32>(frames.size())};
+  if (colour) shape.insert(shape.begin() + 2, 1);
   const std::string stack =
-      variable("frames",
-               {static_cast<u32>(frames[0].height), static_cast<u32>(frames[0].width),
-                static_cast<u32>(frames.size())},
-               doubles, columns(frames, doubles, big_endian), big_endian);
+      variable("frames", shape, doubles, columns(frames, doubles, big_endian), big_endian);
   return mat5_head(big_endian) +
          (compressed ? deflated(scalar, big_endian) + deflated(stack, big_endian) : scalar + stack);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include "imaging/recording/formats.hpp"
 #include "imaging/recording/synthetic_files.hpp"
@@ -211,41 +212,55 @@ TEST(MatlabVariants, ReadsVariablesThatAreTheFrames) {
   EXPECT_EQ(cut.header().frames_lost, 1u);
 }
 
-TEST(CsvVariants, LeavesOutTheNamesInFrontOfRows) {
+TEST(MatlabVariants, PassesOverADimensionOfOneChannel) {
   const TestFolder folder;
-  const std::string flir =
-      "File:,FLIR0042.seq\n\nParameters:,Emissivity:,0.95\n,Refl. temp:,20.00 \xC2\xB0"
-      "C\n,Distance:,1.00 m\n\nFrame 1,20.1,20.2,20.3\n,21.1,21.2,21.3\n\nFrame 2,30.1,30.2,30.3\n,"
-      "31.1,31.2,31.3\n";
-  const auto recording = open_recording(folder.file("a.csv", flir));
-  ASSERT_EQ(recording.header().frames, 2u);
-  ASSERT_EQ(recording.header().width, 3u);
-  ASSERT_EQ(recording.header().height, 2u);
-  EXPECT_EQ(recording.header().quantity, SignalQuantity::temperature);
-  const auto celsius = [](float t) { return t + 273.15F; };
-  EXPECT_FLOAT_EQ(recording.frame(0).values[0], celsius(20.1F));
-  EXPECT_FLOAT_EQ(recording.frame(1).values[5], celsius(31.3F));
-  std::string joined = flir;  // without a blank line between frames, and with semicolons
-  joined.replace(joined.find("\n\nFrame 2"), 2, "\n");
-  std::replace(joined.begin(), joined.end(), ',', ';');
-  EXPECT_EQ(open_recording(folder.file("b.csv", joined)).header().frames, 2u);
-  const auto named = open_recording(folder.file("c.csv", "row 1;1;2;3\nrow 2;4;5;6\n"));
-  EXPECT_EQ(named.header().width, 3u);
-  EXPECT_EQ(named.frame(0).values, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  for (const bool compressed : {false, true}) {
+    const std::string file = synthetic::mat5(film(5), compressed, false, true, true);
+    expect_film(open_recording(folder.file("a.mat", file)), 5);
+  }
+  const std::string file = synthetic::mat5(film(5), false, false, true, true);
+  const auto cut = open_recording(folder.file("b.mat", file.substr(0, file.size() - 9)));
+  expect_film(cut, 4);
+  EXPECT_EQ(cut.header().frames_lost, 1u);
 }
 
-TEST(CsvVariants, ReadsTextOfSixteenBitCharacters) {
+TEST(Hdf5Variants, PassesOverADimensionOfOneChannelAndReadsArraysThatAreTheFrames) {
   const TestFolder folder;
-  const std::string text =
-      "TempUnit=\xB0"
-      "C\r\n20,1\t20,2\t20,3\r\n21,1\t21,2\t21,3\r\n";
-  for (const bool big : {false, true}) {
-    std::string wide = big ? "\xFE\xFF" : "\xFF\xFE";
-    for (const char c : text) wide += big ? std::string{'\0', c} : std::string{c, '\0'};
-    const auto recording = open_recording(folder.file("a.csv", wide));
-    EXPECT_EQ(recording.header().format, "CSV");
-    EXPECT_FLOAT_EQ(recording.frame(0).values[5], 294.45F);
-  }
+  const auto write = [](hid_t file, const std::string& name, const std::vector<hsize_t>& dims,
+                        const std::vector<synthetic::Picture>& frames) {
+    const hid_t space = H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr);
+    const hid_t set =
+        H5Dcreate2(file, name.c_str(), H5T_STD_U16LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    std::vector<std::uint16_t> all;
+    for (const auto& f : frames) all.insert(all.end(), f.counts.begin(), f.counts.end());
+    if (!all.empty()) H5Dwrite(set, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data());
+    H5Dclose(set);
+    H5Sclose(space);
+  };
+  // Each in a file of its own: HDF5 makes no file anew that is still open.
+  const auto file = [&](const char* name, const auto& fill) {
+    const auto path = folder.path() / name;
+    const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    fill(id);
+    H5Fclose(id);
+    return open_recording(path);
+  };
+  expect_film(file("a.h5", [&](hid_t id) { write(id, "video", {5, 17, 24, 1}, film(5)); }), 5);
+  const auto series = file("b.h5", [&](hid_t id) {
+    for (std::size_t i = 0; i < 11; ++i)
+      write(id, "image_" + std::to_string(i), {17, 24}, {synthetic::scene(24, 17, i)});
+  });
+  expect_film(series, 11);
+  EXPECT_TRUE(has_note(series, "the 11 arrays image_0 to image_10 of shape 17 x 24"));
+  // What was never written is no picture of zeros.
+  const auto begun = file("c.h5", [&](hid_t id) {
+    write(id, "image_1", {17, 24}, {synthetic::scene(24, 17, 0)});
+    write(id, "image_2", {17, 24}, {});
+  });
+  EXPECT_EQ(begun.frame(0).values, as_float(synthetic::scene(24, 17, 0)));
+  EXPECT_TRUE(says(refusal_of([&] { begun.frame(1); }), "image_2 was never written whole"));
+  const auto empty = file("d.h5", [&](hid_t id) { write(id, "picture", {17, 24}, {}); });
+  EXPECT_TRUE(says(refusal_of([&] { empty.frame(0); }), "picture was never written whole"));
 }
 
 }  // namespace
