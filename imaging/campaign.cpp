@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // meltproof-campaign: statistics over the tracks of a campaign.
+#include "imaging/meltpool/campaign.hpp"
+
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/atomic_file.hpp"
+#include "base/error.hpp"
 #include "base/program.hpp"
 #include "base/provenance.hpp"
-#include "imaging/meltpool/campaign.hpp"
+
+namespace {
+
+/// Reads a summary by itself: what is of another type than it should be is told with its file.
+void check_summary(const std::filesystem::path& path) {
+  try {
+    static_cast<void>(meltproof::imaging::campaign({path}));
+  } catch (const nlohmann::json::exception&) {
+    throw meltproof::InputError(path.string() +
+                                ": it is not what meltproof-thermography writes; make it anew.");
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace meltproof;
@@ -24,6 +40,7 @@ int main(int argc, char** argv) {
     Provenance provenance = begin_provenance(argc, argv);
     for (const auto& path : summaries)
       if (std::filesystem::exists(path)) provenance.add_input(path);
+    for (const auto& path : summaries) check_summary(path);
     nlohmann::json result = imaging::campaign(summaries);
     provenance.wall_time = provenance.elapsed();
     result["provenance"] = provenance.json();

@@ -17,6 +17,26 @@ ArrayAxes parse_array_axes(const std::string& letters) {
   return {letters.find('f'), letters.find('h'), letters.find('w')};
 }
 
+std::vector<std::size_t> counting_dims(const std::vector<std::size_t>& dims) {
+  std::vector<std::size_t> counting;
+  for (std::size_t i = 0; i < dims.size(); ++i)
+    if (dims.size() <= 3 || dims[i] != 1) counting.push_back(i);
+  return counting;
+}
+
+ArrayAxes place_axes(const std::string& letters, const std::vector<std::size_t>& counting,
+                     bool reversed) {
+  std::string order = letters;
+  const ArrayAxes named = parse_array_axes(order);
+  if (counting.size() == 2) order.erase(named.frame, 1);
+  if (reversed) std::reverse(order.begin(), order.end());
+  const auto place = [&](char letter) {
+    const auto at = order.find(letter);
+    return at == std::string::npos ? no_axis : counting.at(at);
+  };
+  return {place('f'), place('h'), place('w')};
+}
+
 void transpose(const std::vector<float>& columns, std::size_t height, std::size_t width,
                std::vector<float>& into) {
   for (std::size_t column = 0; column < width; ++column)

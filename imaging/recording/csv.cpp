@@ -27,6 +27,29 @@ std::string_view whole_values(std::string_view text) {
   return end == std::string_view::npos ? text : text.substr(0, end);
 }
 
+constexpr std::string_view little_mark = "\xFF\xFE", big_mark = "\xFE\xFF";
+
+bool is_utf16(std::string_view text) {
+  return text.starts_with(little_mark) || text.starts_with(big_mark);
+}
+
+/// Text of 16-bit characters as bytes: what is no ASCII is none of the signs that numbers have, and
+/// becomes its Latin-1 byte, or a question mark.
+std::string as_bytes(std::string_view utf16) {
+  const std::size_t low = utf16.starts_with(little_mark) ? 0 : 1;
+  std::string text;
+  text.reserve(utf16.size() / 2);
+  for (std::size_t i = 2; i + 1 < utf16.size(); i += 2)
+    text += utf16[i + 1 - low] == '\0' ? utf16[i + low] : '?';
+  return text;
+}
+
+ByteFile open_text(const std::filesystem::path& path) {
+  const ByteFile file(path);
+  if (!is_utf16(file.beginning(2))) return file;
+  return {path, as_bytes(file.bytes(0, file.size()))};
+}
+
 /// The shape that holds most values.
 std::pair<std::size_t, std::size_t> main_shape(const std::vector<CsvBlock>& blocks) {
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> values;
@@ -103,6 +126,7 @@ std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& 
 }  // namespace
 
 bool is_csv(std::string_view first_bytes) {
+  if (is_utf16(first_bytes)) return is_csv(as_bytes(first_bytes));
   const bool text = std::all_of(first_bytes.begin(), first_bytes.end(), [](unsigned char c) {
     return c == '\n' || c == '\r' || c == '\t' || c >= 0x20;
   });
@@ -111,7 +135,7 @@ bool is_csv(std::string_view first_bytes) {
 }
 
 Recording open_csv(const std::filesystem::path& path, const ReadOptions& options) {
-  const ByteFile file(path);
+  const ByteFile file = open_text(path);
   CsvDialect dialect;
   const std::string beginning = file.beginning(sample_size);
   const std::string_view sample = whole_values(beginning);

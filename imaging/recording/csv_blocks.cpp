@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "imaging/recording/csv_labels.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -82,6 +83,7 @@ std::vector<CsvBlock> find_csv_blocks(const ByteFile& file, const CsvDialect& di
     }
     if (odd_fields == values.size()) refuse(number - 1, odd_word);
     odd_fields = 0;
+    if (csv_row_begins_frame(line, dialect)) open = false;
     if (!open || blocks.back().width != values.size())
       blocks.push_back({reader.place(), number, 0, values.size()});
     ++blocks.back().rows;

@@ -67,7 +67,7 @@ bool commas_look_decimal(std::string_view text) {
 
 void check_csv_commas(const std::filesystem::path& path, std::string_view text,
                       const CsvDialect& dialect, const ReadOptions& options) {
-  if (dialect.separator != ',') return;
+  if (dialect.separator != ',' || dialect.first != CsvFirst::value) return;
   const bool quoted = !every_row(text, dialect, [](std::string_view line, const auto&) {
     return line.find('"') == line.npos;
   });

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "imaging/recording/csv_labels.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -79,6 +80,20 @@ bool take_field(std::string_view& line, char separator, std::string_view& field)
   return true;
 }
 
+/// How many values stand in rows of the length that has most.
+std::size_t most_values_of_a_width(std::string_view text, const CsvDialect& dialect) {
+  std::vector<float> values;
+  std::map<std::size_t, std::size_t> by_width;
+  std::size_t most = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto end = std::min(text.find('\n', at), text.size());
+    if (parse_csv_row(text.substr(at, end - at), dialect, values))
+      most = std::max(most, by_width[values.size()] += values.size());
+    at = end + 1;
+  }
+  return most;
+}
+
 const std::map<std::string, char> named_separators = {
     {"tab", '\t'}, {"space", ' '}, {"comma", ','}, {"semicolon", ';'}};
 
@@ -93,7 +108,9 @@ CsvLine read_csv_line(std::string_view line, const CsvDialect& dialect,
   values.clear();
   line = bare_line(line, dialect.separator);
   bool number = false, text = false;
-  for (std::string_view content; take_field(line, dialect.separator, content);) {
+  std::string_view content;
+  if (dialect.first != CsvFirst::value) take_field(line, dialect.separator, content);
+  for (; take_field(line, dialect.separator, content);) {
     float value = 0;
     const Field field = parse_field(content, dialect.decimal, value);
     number |= field == Field::number;
@@ -108,7 +125,9 @@ CsvWord first_csv_word(std::string_view line, const CsvDialect& dialect) {
   line = bare_line(line, dialect.separator);
   float value = 0;
   std::size_t column = 1;
-  for (std::string_view field; take_field(line, dialect.separator, field); ++column)
+  std::string_view field;
+  if (dialect.first != CsvFirst::value && take_field(line, dialect.separator, field)) ++column;
+  for (; take_field(line, dialect.separator, field); ++column)
     if (parse_field(field, dialect.decimal, value) == Field::text)
       return {column, std::string(trimmed(field))};
   return {};
@@ -132,23 +151,19 @@ bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDi
     decimals = options.decimal;
   }
   std::size_t best = 0;
-  std::vector<float> values;
-  for (const char separator : separators)
-    for (const char decimal : decimals) {
-      const CsvDialect candidate{separator, decimal};
-      std::map<std::size_t, std::size_t> values_by_width;
-      for (std::size_t at = 0; at < text.size();) {
-        const auto end = std::min(text.find('\n', at), text.size());
-        if (parse_csv_row(text.substr(at, end - at), candidate, values))
-          values_by_width[values.size()] += values.size();
-        at = end + 1;
-      }
-      for (const auto& [width, count] : values_by_width)
+  for (const CsvFirst first : {CsvFirst::value, CsvFirst::row_name}) {
+    for (const char separator : separators)
+      for (const char decimal : decimals) {
+        const CsvDialect candidate{separator, decimal, first};
+        const std::size_t count = most_values_of_a_width(text, candidate);
         if (count > best) {
           best = count;
           dialect = candidate;
         }
-    }
+      }
+    if (best > 0) break;
+  }
+  if (best > 0) dialect.first = csv_first_column(text, dialect);
   return best > 0;
 }
 

@@ -10,10 +10,15 @@
 
 namespace meltproof::imaging {
 
+/// What the first column is: a value like the others, a row's name, or the name of the frame that
+/// begins there.
+enum class CsvFirst { value, row_name, frame_name };
+
 /// How a text writes rows of numbers.
 struct CsvDialect {
   char separator = ',';
   char decimal = '.';
+  CsvFirst first = CsvFirst::value;
 };
 
 /// What a line of text is: a row of at least two values of which one is a number and none a word; a
@@ -35,7 +40,7 @@ bool parse_csv_row(std::string_view line, const CsvDialect& dialect, std::vector
 
 /// The dialect in which most values of `text` stand in rows of one length, among tab, semicolon,
 /// comma, bar and space with decimal point or comma (with both commas where values are quoted); a
-/// separator or decimal sign in `options` is kept.
+/// separator or decimal sign in `options` is kept. Where no line is a row, rows behind names count.
 /// @returns whether there is any row.
 /// @throws InputError if an option is none of the choices.
 bool detect_csv_dialect(std::string_view text, const ReadOptions& options, CsvDialect& dialect);

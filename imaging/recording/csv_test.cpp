@@ -186,6 +186,43 @@ TEST(Csv, ReadsLinesLongerThanAnyBuffer) {
                   static_cast<float>(picture.counts.back()) / 100);
 }
 
+TEST(Csv, LeavesOutTheNamesInFrontOfRows) {
+  const TestFolder folder;
+  const std::string flir =
+      "File:,FLIR0042.seq\n\nParameters:,Emissivity:,0.95\n,Refl. temp:,20.00 \xC2\xB0"
+      "C\n,Distance:,1.00 m\n\nFrame 1,20.1,20.2,20.3\n,21.1,21.2,21.3\n\nFrame 2,30.1,30.2,30.3\n,"
+      "31.1,31.2,31.3\n";
+  const auto recording = open_recording(folder.file("a.csv", flir));
+  ASSERT_EQ(recording.header().frames, 2u);
+  ASSERT_EQ(recording.header().width, 3u);
+  ASSERT_EQ(recording.header().height, 2u);
+  EXPECT_EQ(recording.header().quantity, SignalQuantity::temperature);
+  const auto celsius = [](float t) { return t + 273.15F; };
+  EXPECT_FLOAT_EQ(recording.frame(0).values[0], celsius(20.1F));
+  EXPECT_FLOAT_EQ(recording.frame(1).values[5], celsius(31.3F));
+  std::string joined = flir;  // without a blank line between frames, and with semicolons
+  joined.replace(joined.find("\n\nFrame 2"), 2, "\n");
+  std::replace(joined.begin(), joined.end(), ',', ';');
+  EXPECT_EQ(open_recording(folder.file("b.csv", joined)).header().frames, 2u);
+  const auto named = open_recording(folder.file("c.csv", "row 1;1;2;3\nrow 2;4;5;6\n"));
+  EXPECT_EQ(named.header().width, 3u);
+  EXPECT_EQ(named.frame(0).values, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Csv, ReadsTextOfSixteenBitCharacters) {
+  const TestFolder folder;
+  const std::string text =
+      "TempUnit=\xB0"
+      "C\r\n20,1\t20,2\t20,3\r\n21,1\t21,2\t21,3\r\n";
+  for (const bool big : {false, true}) {
+    std::string wide = big ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char c : text) wide += big ? std::string{'\0', c} : std::string{c, '\0'};
+    const auto recording = open_recording(folder.file("a.csv", wide));
+    EXPECT_EQ(recording.header().format, "CSV");
+    EXPECT_FLOAT_EQ(recording.frame(0).values[5], 294.45F);
+  }
+}
+
 TEST(Folder, ReadsFilesInTheOrderOfTheirNumbers) {
   const TestFolder folder;
   for (const std::size_t i : {10u, 2u, 1u})

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "imaging/recording/flir_block.hpp"
 #include "imaging/recording/flir_pixels.hpp"
 
@@ -17,15 +18,21 @@ namespace {
 /// The blocks of a file in their order; what is cut off or foreign is noted in the header.
 std::vector<FlirBlock> read_blocks(const ByteFile& file, RecordingHeader& header) {
   std::vector<FlirBlock> blocks;
-  std::uint64_t at = 0;
+  std::uint64_t at = 0, between = 0;
   while (at < file.size()) {
     const auto rest = file.bytes(at, std::min<std::uint64_t>(4, file.size() - at));
     if (!begins_flir_block(rest) &&
         !(rest.size() < 4 && std::string_view("FFF").starts_with(rest))) {
-      header.notes.push_back(
-          fmt::format("{} bytes behind the last frame belong to no frame and were not read.",
-                      file.size() - at));
-      break;
+      const auto next =
+          blocks.empty() ? std::nullopt : find_flir_block(file, at, blocks.front(), blocks.size());
+      if (!next) {
+        header.notes.push_back(
+            fmt::format("{} bytes behind the last frame belong to no frame and were not read.",
+                        file.size() - at));
+        break;
+      }
+      between += *next - at;
+      at = *next;
     }
     const auto block = read_flir_block(file, at, blocks.size());
     if (!block) {
@@ -38,6 +45,9 @@ std::vector<FlirBlock> read_blocks(const ByteFile& file, RecordingHeader& header
     blocks.push_back(*block);
     at = block->end;
   }
+  if (between > 0)
+    header.notes.push_back(
+        fmt::format("{} bytes between the frames belong to no frame and were left out.", between));
   return blocks;
 }
 
@@ -66,13 +76,42 @@ void describe_camera(const FlirCamera& camera, RecordingHeader& header) {
 void compare_clocks(const FlirCamera& first, const std::optional<FlirCamera>& last,
                     RecordingHeader& header) {
   if (!last || header.frames < 2 || !(header.frame_rate > 0)) return;
-  const double elapsed = static_cast<double>(last->milliseconds - first.milliseconds) / 1000;
+  if (!last->milliseconds || !first.milliseconds) return;
+  const double elapsed = static_cast<double>(*last->milliseconds - *first.milliseconds) / 1000;
   const double period = elapsed / static_cast<double>(header.frames - 1);
   if (std::abs(period * header.frame_rate - 1) > 0.1)
     header.notes.push_back(fmt::format(
         "The camera ran at {} Hz, but the stored frames are {:.3f} s apart; their times are the "
         "camera's clock.",
         header.frame_rate, period));
+}
+
+/// Whether the bytes of the samples are the wrong way round, judged by the first frame for which
+/// the file does not tell, and a sentence about it.
+bool judge_byte_order(const ByteFile& file, const std::vector<FlirBlock>& blocks,
+                      RecordingHeader& header) {
+  const auto doubted = std::find_if(blocks.begin(), blocks.end(), [](const FlirBlock& block) {
+    return block.coding != FlirCoding::raw || block.order_in_doubt;
+  });
+  if (doubted == blocks.end()) return false;
+  const auto frame = static_cast<std::size_t>(doubted - blocks.begin());
+  bool exchanged = false;
+  try {
+    exchanged = flir_bytes_are_exchanged(file, *doubted, frame);
+  } catch (const InputError&) {
+    if (doubted->coding != FlirCoding::jpeg_ls) throw;
+    return false;  // said when that frame is read; the others may be whole
+  }
+  const char* kind = doubted->coding == FlirCoding::png       ? "as PNG "
+                     : doubted->coding == FlirCoding::jpeg_ls ? "as JPEG-LS "
+                                                              : "";
+  if (exchanged || doubted->coding != FlirCoding::jpeg_ls)
+    header.notes.push_back(
+        fmt::format("The frames are stored {}with {} bytes, judged by which order is smoother; the "
+                    "file {}.",
+                    kind, exchanged ? "exchanged" : "regular",
+                    doubted->coding == FlirCoding::raw ? "contradicts itself" : "does not say"));
+  return exchanged;
 }
 
 }  // namespace
@@ -100,33 +139,23 @@ Recording open_flir_blocks(const ByteFile& file) {
     header.notes.push_back(
         "The camera stored no calibration, so the frames are bare counts without a temperature.");
   }
-  const auto png = std::find_if(blocks.begin(), blocks.end(), [](const FlirBlock& block) {
-    return block.coding == FlirCoding::png;
-  });
-  bool exchanged = false;
   check_frame_size(header);
-  if (png != blocks.end()) {
-    exchanged = flir_png_is_exchanged(file, *png, static_cast<std::size_t>(png - blocks.begin()));
-    header.notes.push_back(
-        fmt::format("The frames are stored as PNG with {} bytes, judged by which order is "
-                    "smoother; the file does not say.",
-                    exchanged ? "exchanged" : "regular"));
-  }
+  const bool exchanged = judge_byte_order(file, blocks, header);
   return {header, [file, blocks, exchanged, first](std::size_t index, Frame& frame) {
             const auto& block = blocks[index];
+            const bool turn =
+                exchanged && (block.coding != FlirCoding::raw || block.order_in_doubt);
             if (!first) {
-              read_flir_counts(file, block, exchanged, index, frame.values);
+              read_flir_counts(file, block, turn, index, frame.values);
               return;
             }
-            const auto camera = read_flir_camera(file, block, index);
-            if (!camera)
-              refuse_flir_frame(file, index,
-                                "has no calibration, but the first frame has one; the file is "
-                                "damaged.");
-            const FlirTemperature temperature(camera->constants);
-            frame.time = static_cast<double>(camera->milliseconds - first->milliseconds) / 1000;
+            // Some sequences tell the camera only in their first frame.
+            const auto own = read_flir_camera(file, block, index);
+            const FlirTemperature temperature((own ? *own : *first).constants);
+            if (own && own->milliseconds && first->milliseconds)
+              frame.time = static_cast<double>(*own->milliseconds - *first->milliseconds) / 1000;
             frame.counts.resize(frame.values.size());
-            read_flir_counts(file, block, exchanged, index, frame.counts);
+            read_flir_counts(file, block, turn, index, frame.counts);
             std::transform(frame.counts.begin(), frame.counts.end(), frame.values.begin(),
                            [&](float counts) {
                              return static_cast<float>(temperature(static_cast<double>(counts)));

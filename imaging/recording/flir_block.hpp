@@ -28,7 +28,10 @@ struct FlirBlock {
   FlirRecord raw, camera;
   std::uint64_t end = 0;  ///< where the next block begins
   std::size_t width = 0, height = 0;
-  std::endian order = std::endian::little;  ///< of raw pixels
+  std::endian header_order = std::endian::little;  ///< of header and directory
+  std::endian order = std::endian::little;         ///< of raw pixels, as their record says
+  /// The subtype of the raw record means the other order; which is right has to be judged.
+  bool order_in_doubt = false;
   FlirCoding coding = FlirCoding::raw;
 };
 
@@ -38,13 +41,19 @@ constexpr std::uint64_t flir_raw_header = 32;
 /// What a block says of camera, object and air.
 struct FlirCamera {
   FlirConstants constants;
-  std::int64_t milliseconds = 0;  ///< since 1970, an integer: a double would round the differences
-  double frame_rate = 0;          ///< Hz
+  /// Since 1970, an integer: a double would round the differences. Nothing: the record ends before.
+  std::optional<std::int64_t> milliseconds;
+  double frame_rate = 0;                  ///< Hz; 0: the record does not say
   double saturated = 0, under_range = 0;  ///< K
 };
 
 /// Whether these bytes begin a block.
 bool begins_flir_block(std::string_view bytes);
+
+/// Where the next block of frames like `like` begins at or behind `from`: some software leaves
+/// bytes between frames. Only for places behind a block, since the magic also occurs inside pixels.
+std::optional<std::uint64_t> find_flir_block(const ByteFile& file, std::uint64_t from,
+                                             const FlirBlock& like, std::size_t frame);
 
 /// The directory of the block at `start`; nothing if the file ends before the block does.
 /// @throws InputError if the block contradicts itself or is compressed in an unknown way.

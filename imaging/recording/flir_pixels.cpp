@@ -68,16 +68,24 @@ void decode_jpeg_ls(const ByteFile& file, const FlirBlock& block, std::size_t fr
 
 }  // namespace
 
-bool flir_png_is_exchanged(const ByteFile& file, const FlirBlock& block, std::size_t frame) {
+bool flir_bytes_are_exchanged(const ByteFile& file, const FlirBlock& block, std::size_t frame) {
   std::vector<float> counts(block.width * block.height);
-  decode_png(file, block, frame, counts);
+  read_flir_counts(file, block, false, frame, counts);
   double as_stored = 0, exchanged = 0;
   for (std::size_t i = 1; i < counts.size(); ++i) {
     if (i % block.width == 0) continue;
     as_stored += std::abs(static_cast<double>(counts[i] - counts[i - 1]));
     exchanged += std::abs(static_cast<double>(exchange(counts[i]) - exchange(counts[i - 1])));
   }
-  return exchanged <= as_stored;
+  switch (block.coding) {
+    case FlirCoding::png:
+      return exchanged <= as_stored;
+    case FlirCoding::jpeg_ls:
+      return 4 * exchanged < as_stored;
+    case FlirCoding::raw:
+      break;
+  }
+  return exchanged < as_stored;
 }
 
 void read_flir_counts(const ByteFile& file, const FlirBlock& block, bool exchanged,
@@ -85,15 +93,15 @@ void read_flir_counts(const ByteFile& file, const FlirBlock& block, bool exchang
   switch (block.coding) {
     case FlirCoding::raw:
       widen(file.bytes(block.raw.place + flir_raw_header, 2 * counts.size()), block.order, counts);
-      return;
+      break;
     case FlirCoding::jpeg_ls:
       decode_jpeg_ls(file, block, frame, counts);
-      return;
+      break;
     case FlirCoding::png:
       decode_png(file, block, frame, counts);
-      if (exchanged) std::transform(counts.begin(), counts.end(), counts.begin(), exchange);
-      return;
+      break;
   }
+  if (exchanged) std::transform(counts.begin(), counts.end(), counts.begin(), exchange);
 }
 
 }  // namespace meltproof::imaging

@@ -13,6 +13,7 @@
 #include "base/artifact_hdf5.hpp"
 #include "base/error.hpp"
 #include "imaging/recording/array_axes.hpp"
+#include "imaging/recording/hdf5_candidates.hpp"
 #include "imaging/recording/signal_unit.hpp"
 
 namespace meltproof::imaging {
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_data_sets = 100'000;
 // A chunk is decompressed as a whole, so a damaged chunk size would ask for that much memory. No
 // filter that is usual gains more than this.
 constexpr std::uint64_t most_gain = 2000, smallest_chunk = 1 << 20;
@@ -30,76 +30,11 @@ struct Source {
   Handle file{H5I_INVALID_HID, &H5Fclose};
   Handle set{H5I_INVALID_HID, &H5Dclose};
   std::string name;
-  std::vector<hsize_t> dims;  // as HDF5 stores them
-  ArrayAxes axes;             // of dims
+  std::vector<std::string> pictures;  // of frames that are arrays of their own; `set` is the first
+  std::vector<hsize_t> dims;          // as HDF5 stores them
+  ArrayAxes axes;                     // of dims
   fs::path path;
 };
-
-struct Candidate {
-  std::string name;
-  std::vector<hsize_t> dims;
-};
-
-bool holds_numbers(hid_t set) {
-  const Handle type{H5Dget_type(set), &H5Tclose};
-  const auto kind = H5Tget_class(type.get());
-  return (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type.get()) <= 8;
-}
-
-std::vector<hsize_t> dims_of(hid_t set) {
-  const Handle space{H5Dget_space(set), &H5Sclose};
-  const int rank = H5Sget_simple_extent_ndims(space.get());
-  std::vector<hsize_t> dims(static_cast<std::size_t>(std::max(0, rank)));
-  if (rank > 0) H5Sget_simple_extent_dims(space.get(), dims.data(), nullptr);
-  return dims;
-}
-
-std::string shape_text(std::vector<hsize_t> dims, bool reversed) {
-  if (reversed) std::reverse(dims.begin(), dims.end());
-  return fmt::format("{}", fmt::join(dims, " x "));
-}
-
-/// Every data set of numbers with two or three dimensions, by its path.
-std::vector<Candidate> find_candidates(hid_t file) {
-  std::vector<std::string> names;
-  const auto visit = [](hid_t, const char* name, const H5O_info_t* info, void* data) -> herr_t {
-    auto& list = *static_cast<std::vector<std::string>*>(data);
-    // MATLAB keeps the contents of cells in groups whose names begin so.
-    if (info->type == H5O_TYPE_DATASET && name[0] != '#') list.emplace_back(name);
-    return list.size() > most_data_sets ? 1 : 0;
-  };
-  H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &names, H5O_INFO_BASIC);
-  std::vector<Candidate> candidates;
-  for (const auto& name : names) {
-    const Handle set{H5Dopen2(file, name.c_str(), H5P_DEFAULT), &H5Dclose};
-    if (!set.valid() || !holds_numbers(set.get())) continue;
-    auto dims = dims_of(set.get());
-    // MATLAB's scalars and rows have two dimensions as well.
-    const hsize_t least = dims.size() == 2 ? 2 : 1;
-    if ((dims.size() == 2 || dims.size() == 3) &&
-        *std::min_element(dims.begin(), dims.end()) >= least)
-      candidates.push_back({name, dims});
-  }
-  return candidates;
-}
-
-std::string choose(const fs::path& path, hid_t file, bool reversed) {
-  auto candidates = find_candidates(file);
-  const auto is_stack = [](const Candidate& c) { return c.dims.size() == 3; };
-  if (std::any_of(candidates.begin(), candidates.end(), is_stack))
-    std::erase_if(candidates, [&](const Candidate& c) { return !is_stack(c); });
-  if (candidates.size() == 1) return candidates[0].name;
-  if (candidates.empty())
-    throw InputError(path.string() +
-                     ": there is no array of numbers with three dimensions in it, which frames "
-                     "would be; give a file with frames.");
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(candidates.size(), 8); ++i)
-    list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", candidates[i].name,
-                        shape_text(candidates[i].dims, reversed));
-  throw InputError(fmt::format("{}: {} arrays may hold the frames: {}; say which one (dataset).",
-                               path.string(), candidates.size(), list));
-}
 
 /// Refuses chunks that cannot be, and makes the cache hold one, so that frames that share a chunk
 /// do not decompress it anew each.
@@ -108,7 +43,7 @@ Handle open_set(hid_t file, const fs::path& path, const std::string& name) {
   if (!set.valid())
     throw InputError(fmt::format("{}: there is no data set {}; give the path of the frames.",
                                  path.string(), name));
-  if (!holds_numbers(set.get()))
+  if (!hdf5_holds_numbers(set.get()))
     throw InputError(fmt::format(
         "{}: the data set {} holds no integers or floating-point numbers; give the path of the "
         "frames.",
@@ -136,6 +71,24 @@ Handle open_set(hid_t file, const fs::path& path, const std::string& name) {
   H5Pset_chunk_cache(access.get(), 521,
                      std::max<std::size_t>(1 << 20, static_cast<std::size_t>(bytes)), 1);
   return Handle{H5Dopen2(file, name.c_str(), access.get()), &H5Dclose};
+}
+
+/// Whether all of a picture is in the file: HDF5 gives zeros for what was never written.
+bool is_written(hid_t set) {
+  const Handle layout{H5Dget_create_plist(set), &H5Pclose};
+  H5D_space_status_t status = H5D_SPACE_STATUS_ALLOCATED;
+  H5Dget_space_status(set, &status);
+  if (status == H5D_SPACE_STATUS_NOT_ALLOCATED) return false;
+  if (H5Pget_layout(layout.get()) != H5D_CHUNKED) return true;
+  const auto dims = hdf5_dims(set);
+  std::vector<hsize_t> chunk(dims.size());
+  H5Pget_chunk(layout.get(), static_cast<int>(chunk.size()), chunk.data());
+  hsize_t expected = 1, stored = 0;
+  for (std::size_t i = 0; i < dims.size(); ++i)
+    expected *= dims[i] / chunk[i] + (dims[i] % chunk[i] != 0 ? 1 : 0);
+  const Handle all{H5Dget_space(set), &H5Sclose};
+  H5Dget_num_chunks(set, all.get(), &stored);
+  return stored >= expected;
 }
 
 /// Which frames are in the file: a recording that was broken off is as long as announced, and HDF5
@@ -202,16 +155,23 @@ void check_frame_bytes(const Source& s) {
 }
 
 void read_frame(const Source& s, std::size_t index, std::vector<float>& stored) {
+  const bool own = !s.pictures.empty();
+  const Handle picture =
+      own ? open_set(s.file.get(), s.path, s.pictures[index]) : Handle{H5I_INVALID_HID, &H5Dclose};
+  const hid_t set = own ? picture.get() : s.set.get();
+  if (s.axes.frame == no_axis && (hdf5_dims(set) != s.dims || !is_written(set)))
+    throw InputError(fmt::format("{}: the array {} was never written whole to the file.",
+                                 s.path.string(), own ? s.pictures[index] : s.name));
   std::vector<hsize_t> start(s.dims.size(), 0), count = s.dims;
-  if (s.dims.size() == 3) {
+  if (s.pictures.empty() && s.axes.frame != no_axis) {
     start[s.axes.frame] = index;
     count[s.axes.frame] = 1;
   }
-  const Handle from{H5Dget_space(s.set.get()), &H5Sclose};
+  const Handle from{H5Dget_space(set), &H5Sclose};
   H5Sselect_hyperslab(from.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr);
   const Handle to{H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr),
                   &H5Sclose};
-  if (H5Dread(s.set.get(), H5T_NATIVE_FLOAT, to.get(), from.get(), H5P_DEFAULT, stored.data()) < 0)
+  if (H5Dread(set, H5T_NATIVE_FLOAT, to.get(), from.get(), H5P_DEFAULT, stored.data()) < 0)
     throw InputError(
         fmt::format("{}: frame {} of {} cannot be read; the file is damaged, or was "
                     "compressed with a filter that is not installed here.",
@@ -230,20 +190,21 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
     throw InputError(path.string() +
                      ": the HDF5 file cannot be opened; it is damaged or cut off, and then HDF5 "
                      "opens none of it. Copy it again from its source.");
-  s->name = options.dataset.empty() ? choose(path, s->file.get(), reversed) : options.dataset;
+  auto names = options.dataset.empty() ? choose_hdf5_arrays(path, s->file.get(), reversed)
+                                       : std::vector{options.dataset};
+  s->name = names.front();
+  if (names.size() > 1) s->pictures = std::move(names);
   s->set = open_set(s->file.get(), path, s->name);
-  s->dims = dims_of(s->set.get());
-  const std::string shape = shape_text(s->dims, reversed);
-  if ((s->dims.size() != 3 && s->dims.size() != 2) || std::count(s->dims.begin(), s->dims.end(), 0))
+  s->dims = hdf5_dims(s->set.get());
+  const auto counting = counting_dims({s->dims.begin(), s->dims.end()});
+  const std::string shape = hdf5_shape_text(s->dims, reversed);
+  if ((counting.size() != 3 && counting.size() != 2) ||
+      std::count(s->dims.begin(), s->dims.end(), 0))
     throw InputError(fmt::format(
         "{}: the data set {} has the shape {}; expected three dimensions, frames, rows and columns "
         "in some order.",
         path.string(), s->name, shape.empty() ? "of one value" : shape));
-  std::string axes = options.axes.empty() ? default_axes : options.axes;
-  const ArrayAxes named = parse_array_axes(axes);
-  if (s->dims.size() == 2) axes.erase(named.frame, 1);
-  if (reversed) std::reverse(axes.begin(), axes.end());
-  s->axes = {axes.find('f'), axes.find('h'), axes.find('w')};
+  s->axes = place_axes(options.axes.empty() ? default_axes : options.axes, counting, reversed);
 
   RecordingHeader header;
   header.path = path;
@@ -252,16 +213,19 @@ Recording open_hdf5_array(const fs::path& path, const ReadOptions& options,
   check_frame_size(header);
   check_frame_bytes(*s);
   Written written;
-  header.frames = 1;
-  if (s->dims.size() == 3) {
+  header.frames = std::max<std::size_t>(1, s->pictures.size());
+  if (counting.size() == 3) {
     written = find_written(*s);
     header.frames = count_frames(*s, written);
     header.frames_lost = s->dims[s->axes.frame] - header.frames;
   }
   header.notes.push_back(fmt::format(
-      "The frames are the array {} of shape {}, taken as {} (frame f, row h, column w); if the "
+      "The frames are {} of shape {}, taken as {} (frame f, row h, column w); if the "
       "pictures stand on their side, say another order (axes).",
-      s->name, shape, options.axes.empty() ? default_axes : options.axes));
+      s->pictures.empty()
+          ? "the array " + s->name
+          : fmt::format("the {} arrays {} to {}", s->pictures.size(), s->name, s->pictures.back()),
+      shape, options.axes.empty() ? default_axes : options.axes));
   std::string unit = read_text_attribute(s->set.get(), "units");
   if (unit.empty()) unit = read_text_attribute(s->set.get(), "unit");
   const SignalScale scale = describe_signal(unit, options.unit, header);

@@ -16,6 +16,7 @@
 #include "imaging/recording/guarded.hpp"
 #include "imaging/recording/hdf5_array.hpp"
 #include "imaging/recording/mat5_elements.hpp"
+#include "imaging/recording/matlab_variables.hpp"
 #include "imaging/recording/signal_unit.hpp"
 
 namespace meltproof::imaging {
@@ -37,7 +38,8 @@ std::string& complaint() {
 struct Source {
   fs::path path;
   std::shared_ptr<mat_t> file;
-  std::shared_ptr<matvar_t> variable;
+  /// One variable with the frames, or one for every frame.
+  std::vector<std::shared_ptr<matvar_t>> variables;
   ArrayAxes axes;
   std::size_t frames = 1;      // that can be read
   std::vector<float> portion;  // of the frames from `first` on
@@ -48,67 +50,13 @@ struct Source {
   throw InputError(path.string() + ": " + what);
 }
 
-bool holds_numbers(const matvar_t& v) {
-  switch (v.class_type) {
-    case MAT_C_DOUBLE:
-    case MAT_C_SINGLE:
-    case MAT_C_INT8:
-    case MAT_C_UINT8:
-    case MAT_C_INT16:
-    case MAT_C_UINT16:
-    case MAT_C_INT32:
-    case MAT_C_UINT32:
-    case MAT_C_INT64:
-    case MAT_C_UINT64:
-      return v.isComplex == 0;
-    default:
-      return false;
-  }
-}
-
-/// Three dimensions, or two that are more than one row of numbers.
-bool is_stack_or_picture(const matvar_t& v) {
-  const std::vector<std::size_t> dims(v.dims, v.dims + v.rank);
-  const std::size_t least = v.rank == 2 ? 2 : 1;
-  return holds_numbers(v) && (v.rank == 2 || v.rank == 3) &&
-         *std::min_element(dims.begin(), dims.end()) >= least;
-}
-
-std::string shape_text(const matvar_t& v) {
-  return fmt::format("{}", fmt::join(std::vector<std::size_t>(v.dims, v.dims + v.rank), " x "));
-}
-
-std::shared_ptr<matvar_t> owned(matvar_t* v) {
-  return {v, [](matvar_t* p) { Mat_VarFree(p); }};
-}
-
-std::shared_ptr<matvar_t> choose(const fs::path& path, mat_t* file) {
-  std::vector<std::shared_ptr<matvar_t>> found;
-  while (auto v = owned(Mat_VarReadNextInfo(file)))
-    if (is_stack_or_picture(*v)) found.push_back(v);
-  const auto is_stack = [](const auto& v) { return v->rank == 3; };
-  if (std::any_of(found.begin(), found.end(), is_stack))
-    std::erase_if(found, [&](const auto& v) { return !is_stack(v); });
-  if (found.size() == 1) return found[0];
-  if (found.empty())
-    refuse(path,
-           "there is no variable of numbers with three dimensions in it, which frames would be; "
-           "save them as a variable of their own, not inside a struct or cell.");
-  std::string list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(found.size(), 8); ++i)
-    list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", found[i]->name ? found[i]->name : "?",
-                        shape_text(*found[i]));
-  refuse(path, fmt::format("{} variables may hold the frames: {}; say which one (dataset).",
-                           found.size(), list));
-}
-
-/// How many of the frames lie in the file as a whole. A compressed variable must be there whole.
-std::size_t whole_frames(const Source& s, const ByteFile& file,
+/// How many frames of a variable lie in the file as a whole. A compressed one must be there whole.
+std::size_t whole_frames(const Source& s, const matvar_t& v, const ByteFile& file,
                          const std::vector<Mat5Element>& elements) {
-  const matvar_t& v = *s.variable;
   double values = 1;
   for (int i = 0; i < v.rank; ++i) values *= static_cast<double>(v.dims[i]);
-  const std::size_t frames = v.rank == 3 ? v.dims[s.axes.frame] : 1;
+  const bool is_stack = s.axes.frame != no_axis;
+  const std::size_t frames = is_stack ? v.dims[s.axes.frame] : 1;
   const std::string name = v.name ? v.name : "";
   const auto named =
       std::find_if(elements.begin(), elements.end(), [&](const auto& e) { return e.name == name; });
@@ -130,13 +78,29 @@ std::size_t whole_frames(const Source& s, const ByteFile& file,
     return frames;
   }
   if (named->data_length <= file.size() - named->data_place) return frames;
-  if (v.rank != 3 || s.axes.frame != 2)
+  if (!is_stack || s.axes.frame < std::max(s.axes.row, s.axes.column))
     refuse(s.path, fmt::format("the variable {} is cut off, and every frame with it; copy the file "
                                "again from its source.",
                                name));
-  const double frame_bytes = size * static_cast<double>(v.dims[0] * v.dims[1]);
+  const double frame_bytes = size * static_cast<double>(v.dims[s.axes.row] * v.dims[s.axes.column]);
   return static_cast<std::size_t>(static_cast<double>(file.size() - named->data_place) /
                                   frame_bytes);
+}
+
+/// Leaves the pictures up to the first one that is cut off. @returns how many were left out.
+std::size_t keep_whole_pictures(Source& s, const ByteFile& file,
+                                const std::vector<Mat5Element>& elements) {
+  const std::size_t announced = s.variables.size();
+  for (std::size_t i = 0; i < announced; ++i) {
+    try {
+      whole_frames(s, *s.variables[i], file, elements);
+    } catch (const InputError&) {
+      if (i == 0) throw;
+      s.variables.resize(i);
+      break;
+    }
+  }
+  return announced - s.variables.size();
 }
 
 template <class T>
@@ -176,22 +140,25 @@ void to_float(matio_classes kind, const std::vector<char>& raw, std::vector<floa
 
 /// Reads the frames from `index` on that fit a portion.
 void read_portion(Source& s, std::size_t index, std::size_t pixels) {
-  const matvar_t& v = *s.variable;
+  const auto& variable = s.variables[s.variables.size() > 1 ? index : 0];
+  const matvar_t& v = *variable;
   const std::size_t value_size = Mat_SizeOfClass(v.class_type);
   const std::size_t fitting = std::max<std::size_t>(1, portion_bytes / (pixels * value_size));
   s.first = index;
   // Only with the frames as the slowest index do several of them lie together.
-  s.count = s.axes.frame == 2 ? std::min(fitting, s.frames - index) : 1;
+  const bool is_stack = s.axes.frame != no_axis;
+  const bool slowest = is_stack && s.axes.frame > std::max(s.axes.row, s.axes.column);
+  s.count = slowest ? std::min(fitting, s.frames - index) : 1;
   std::vector<int> start(3, 0), stride(3, 1), edge(3, 1);
   for (std::size_t i = 0; i < static_cast<std::size_t>(v.rank); ++i)
     edge[i] = static_cast<int>(v.dims[i]);
-  if (v.rank == 3) {
+  if (is_stack) {
     start[s.axes.frame] = static_cast<int>(index);
     edge[s.axes.frame] = static_cast<int>(s.count);
   }
   std::vector<char> raw(s.count * pixels * value_size);
   complaint().clear();
-  const int failed = Mat_VarReadData(s.file.get(), s.variable.get(), raw.data(), start.data(),
+  const int failed = Mat_VarReadData(s.file.get(), variable.get(), raw.data(), start.data(),
                                      stride.data(), edge.data());
   if (failed != 0 || !complaint().empty()) {
     s.count = 0;
@@ -226,30 +193,37 @@ Recording open_matlab_5(const fs::path& path, const ReadOptions& options) {
                if (f) Mat_Close(f);
              }};
   if (!s->file) refuse(path, "the MATLAB file cannot be opened; it is damaged.");
-  s->variable = options.dataset.empty()
-                    ? choose(path, s->file.get())
-                    : owned(Mat_VarReadInfo(s->file.get(), options.dataset.c_str()));
-  if (!s->variable || !is_stack_or_picture(*s->variable))
+  if (options.dataset.empty())
+    s->variables = choose_variables(path, s->file.get());
+  else
+    s->variables = {owned_variable(Mat_VarReadInfo(s->file.get(), options.dataset.c_str()))};
+  if (s->variables[0]) drop_single_dims(*s->variables[0]);
+  if (!s->variables[0] || !is_stack_or_picture(*s->variables[0]))
     refuse(path, fmt::format("there is no variable {} of numbers with three dimensions; give the "
                              "name of the frames.",
                              options.dataset));
-  const matvar_t& v = *s->variable;
-  std::string axes = options.axes.empty() ? "hwf" : options.axes;
-  const ArrayAxes named = parse_array_axes(axes);
-  if (v.rank == 2) axes.erase(named.frame, 1);
-  s->axes = {axes.find('f'), axes.find('h'), axes.find('w')};
+  const matvar_t& v = *s->variables[0];
+  s->axes = place_axes(options.axes.empty() ? "hwf" : options.axes,
+                       counting_dims({v.dims, v.dims + v.rank}), false);
   RecordingHeader header;
   header.path = path;
   header.height = v.dims[s->axes.row];
   header.width = v.dims[s->axes.column];
   check_frame_size(header);
-  s->frames = whole_frames(*s, file, elements);
+  const bool series = s->variables.size() > 1;
+  if (series) header.frames_lost = keep_whole_pictures(*s, file, elements);
+  s->frames = series ? s->variables.size() : whole_frames(*s, v, file, elements);
   header.frames = s->frames;
-  header.frames_lost = (v.rank == 3 ? v.dims[s->axes.frame] : 1) - s->frames;
+  if (!series)
+    header.frames_lost = (s->axes.frame != no_axis ? v.dims[s->axes.frame] : 1) - s->frames;
+  const auto name = [](const matvar_t& variable) { return variable.name ? variable.name : "?"; };
   header.notes.push_back(fmt::format(
-      "The frames are the variable {} of shape {}, taken as {} (frame f, row h, column w); if the "
+      "The frames are {} of shape {}, taken as {} (frame f, row h, column w); if the "
       "pictures stand on their side, say another order (axes).",
-      v.name ? v.name : "?", shape_text(v), options.axes.empty() ? "hwf" : options.axes));
+      series
+          ? fmt::format("the {} variables {} to {}", s->frames, name(v), name(*s->variables.back()))
+          : fmt::format("the variable {}", name(v)),
+      matlab_shape_text(v), options.axes.empty() ? "hwf" : options.axes));
   const SignalScale scale = describe_signal("", options.unit, header);
   return {header, [s, scale, height = header.height, width = header.width](std::size_t index,
                                                                            Frame& frame) {

@@ -3,12 +3,15 @@
 // a frame's header in bytes; u32 at 19 and 23 the sizes of a frame with and without its header in
 // 16-bit words (not bytes); u32 at 27 the number of frames; f32 at 141 emissivity, 145 ambient
 // temperature in K, 403 period in s, 407 integration time in s; u16 at 377 width, 379 height, 381
-// bits. Each frame is its header, then width x height u16. The frame's header stamps the time:
-// minute, hour, hundredth and second as bytes from 80 on.
+// bits; u16 at 277 tells whether the software rescaled the values. Each frame is its header, then
+// width x height u16. The frame's header stamps the time: minute, hour, hundredth and second as
+// bytes from 80 on. A lock-in recording has four marked words and its reference signal in the first
+// row.
 #include "imaging/recording/ptw.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -32,12 +35,39 @@ double time_of_day(const ByteFile& file, std::uint64_t frame_start) {
   return at(1) * 3600 + at(0) * 60 + at(3) + at(2) * 0.01;
 }
 
+/// Bytes from one frame to the next: what the header says of the pictures, or any of its sizes with
+/// which the announced frames fill the file exactly, since not all software counts in words.
+/// @returns 0 if none will do.
+std::uint64_t frame_stride(std::uint64_t room, std::uint64_t frames, std::uint64_t frame_header,
+                           std::uint64_t pixels, std::uint64_t frame_size,
+                           std::uint64_t picture_size) {
+  const std::uint64_t plain = frame_header + 2 * pixels;
+  for (const std::uint64_t stride : {plain, 2 * frame_size, frame_size})
+    if (stride > 0 && stride >= plain && frames > 0 && room / stride == frames &&
+        room % stride == 0)
+      return stride;
+  return picture_size == pixels || picture_size == 2 * pixels ? plain : 0;
+}
+
+/// Whether the first row of the first frame is a lock-in reference instead of pixels.
+bool has_lock_in_row(const ByteFile& file, std::uint64_t pixels_at, std::uint64_t width) {
+  constexpr std::uint16_t marks[] = {1220, 3907, 1204, 2382};
+  if (width < std::size(marks)) return false;
+  const std::string row = file.bytes(pixels_at, sizeof marks);
+  for (std::size_t i = 0; i < std::size(marks); ++i)
+    if (number_at<std::uint16_t>(row, 2 * i, little) != marks[i]) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_ptw(std::string_view first_bytes) {
-  // A text may begin with the same letters, so the byte behind them, which is no letter, counts
-  // too.
-  return first_bytes.size() > 4 && first_bytes.substr(0, 3) == "CED" && first_bytes[3] == '\0';
+  // A text may begin with the same letters, so the two bytes that fill the signature count too, and
+  // what stands for the sizes of the headers.
+  if (first_bytes.size() < 19 || !first_bytes.starts_with("CED")) return false;
+  if (first_bytes[3] == '\0') return true;
+  const auto main_header = number_at<std::uint32_t>(std::string(first_bytes), 11, little);
+  return first_bytes[3] == ' ' && main_header >= smallest_header && main_header < 1 << 20;
 }
 
 Recording open_ptw(const std::filesystem::path& path) {
@@ -59,15 +89,17 @@ Recording open_ptw(const std::filesystem::path& path) {
 
   const std::uint64_t main_header = u32(11), frame_header = u32(15), words = u32(23),
                       frames = u32(27);
-  const std::uint64_t width = u16(377), height = u16(379), bits = u16(381);
-  if (width == 0 || height == 0 || words != width * height || bits == 0 || bits > 16 ||
-      main_header < smallest_header)
-    throw InputError(
-        path.string() + ": the PTW header contradicts itself: " + std::to_string(width) + " x " +
-        std::to_string(height) + " pixels of " + std::to_string(bits) + " bits in frames of " +
-        std::to_string(words) + " 16-bit words; the file is damaged or of an unknown kind.");
-  const std::uint64_t stride = frame_header + 2 * words;
-  const std::uint64_t held = file.size() > main_header ? (file.size() - main_header) / stride : 0;
+  const std::uint64_t width = u16(377), height = u16(379);
+  const std::uint64_t bits = u16(381) >= 1 && u16(381) <= 16 ? u16(381) : 16;
+  const std::uint64_t room = file.size() > main_header ? file.size() - main_header : 0;
+  const std::uint64_t stride =
+      frame_stride(room, frames, frame_header, width * height, u32(19), words);
+  if (width == 0 || height == 0 || stride == 0 || main_header < smallest_header)
+    throw InputError(path.string() +
+                     ": the PTW header contradicts itself: " + std::to_string(width) + " x " +
+                     std::to_string(height) + " pixels in frames of " + std::to_string(words) +
+                     " 16-bit words; the file is damaged or of an unknown kind.");
+  const std::uint64_t held = room / stride;
 
   RecordingHeader header;
   header.path = path;
@@ -102,9 +134,21 @@ Recording open_ptw(const std::filesystem::path& path) {
                       period, elapsed / static_cast<double>(held - 1)));
   }
 
-  return {header, [file, main_header, frame_header, stride](std::size_t index, Frame& frame) {
+  if (u16(277) != 0)
+    header.notes.push_back(
+        "The camera's software rescaled the values of this file to a scale of its own; they count "
+        "as a bare signal.");
+  const bool lock_in = held > 0 && has_lock_in_row(file, main_header + frame_header, width);
+  if (lock_in)
+    header.notes.push_back(
+        "The first row of every frame holds the lock-in reference and no pixels; it is marked as "
+        "dead.");
+  return {header, [file, main_header, frame_header, stride, lock_in, width](std::size_t index,
+                                                                            Frame& frame) {
             widen(file.bytes(main_header + index * stride + frame_header, 2 * frame.values.size()),
                   little, frame.values);
+            if (lock_in)
+              std::fill_n(frame.values.begin(), width, std::numeric_limits<float>::quiet_NaN());
           }};
 }
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include "imaging/recording/synthetic_bytes.hpp"
 
@@ -38,7 +37,7 @@ Picture scene(std::size_t width, std::size_t height, std::size_t frame) {
   return p;
 }
 
-std::string ptw(const std::vector<Picture>& frames) {
+std::string ptw(const std::vector<Picture>& frames, std::size_t gap) {
   const u32 main_header = 1024, frame_header = 128;
   const auto pixels = static_cast<u32>(frames[0].counts.size());
   Bytes b;
@@ -46,8 +45,9 @@ std::string ptw(const std::vector<Picture>& frames) {
   b.text.replace(0, 3, "CED");
   b.put(11, main_header);
   b.put(15, frame_header);
-  b.put(19, frame_header / 2 + pixels);
-  b.put(23, pixels);
+  const auto behind = static_cast<u32>(gap);
+  b.put(19, gap > 0 ? frame_header + 2 * pixels + behind : frame_header / 2 + pixels);
+  b.put(23, gap > 0 ? 2 * pixels + behind : pixels);
   b.put(27, static_cast<u32>(frames.size()));
   b.put(141, 0.95F);
   b.put(145, 293.15F);
@@ -59,7 +59,7 @@ std::string ptw(const std::vector<Picture>& frames) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     std::string head(frame_header, '\0');
     head[82] = static_cast<char>(i);  // hundredths of a second
-    b.text += head + pixel_bytes(frames[i], false);
+    b.text += head + pixel_bytes(frames[i], false) + std::string(gap, '\x7F');
   }
   return b.text;
 }
@@ -145,67 +145,6 @@ std::string irb(const std::vector<Picture>& frames, bool compressed, u32 period)
     b.text.resize(directory + 64);
   }
   return b.text;
-}
-
-std::string tiff(const std::vector<Picture>& frames) {
-  Bytes b;
-  b.text = std::string("II*\0", 4);
-  std::size_t link = 4;
-  b.add(u32{0});
-  for (const auto& picture : frames) {
-    const auto pixels = static_cast<u32>(b.text.size());
-    b.text += pixel_bytes(picture, false);
-    b.put(link, static_cast<u32>(b.text.size()));
-    const std::pair<u16, u32> tags[] = {{256, static_cast<u32>(picture.width)},
-                                        {257, static_cast<u32>(picture.height)},
-                                        {258, 16},
-                                        {259, 1},
-                                        {262, 1},
-                                        {273, pixels},
-                                        {277, 1},
-                                        {278, static_cast<u32>(picture.height)},
-                                        {279, static_cast<u32>(2 * picture.counts.size())}};
-    b.add(static_cast<u16>(std::size(tags)));
-    for (const auto& [tag, value] : tags) {
-      b.add(tag);
-      b.add(u16{4});  // every value as u32
-      b.add(u32{1});
-      b.add(value);
-    }
-    link = b.text.size();
-    b.add(u32{0});
-  }
-  return b.text;
-}
-
-std::string bmp(const Picture& picture) {
-  const std::size_t row = (picture.width + 3) / 4 * 4, start = 54 + 1024;
-  Bytes b;
-  b.text.assign(start, '\0');
-  b.text.replace(0, 2, "BM");
-  b.put(2, static_cast<u32>(start + row * picture.height));
-  b.put(10, static_cast<u32>(start));
-  b.put(14, u32{40});
-  b.put(18, static_cast<u32>(picture.width));
-  b.put(22, static_cast<u32>(picture.height));
-  b.put(26, u16{1});
-  b.put(28, u16{8});
-  for (u32 i = 0; i < 256; ++i) b.put(54 + 4 * i, i * 0x010101);
-  for (std::size_t y = picture.height; y-- > 0;) {  // from the bottom up
-    std::string line(row, '\0');
-    for (std::size_t x = 0; x < picture.width; ++x)
-      line[x] = static_cast<char>(picture.counts[y * picture.width + x] >> 7);
-    b.text += line;
-  }
-  return b.text;
-}
-
-std::string png(const Picture& picture) {
-  const cv::Mat image(static_cast<int>(picture.height), static_cast<int>(picture.width), CV_16U,
-                      const_cast<u16*>(picture.counts.data()));
-  std::vector<unsigned char> bytes;
-  cv::imencode(".png", image, bytes);
-  return {bytes.begin(), bytes.end()};
 }
 
 void write_hdf5(const std::filesystem::path& path, const std::string& name,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // FLIR's blocks and MATLAB 5, whose parts are longer.
+#include <algorithm>
+
 #include <charls/charls.h>
 #include <zlib.h>
 
@@ -31,6 +33,8 @@ std::string stored(const Picture& picture, const FlirBlock& options) {
       return png(exchanged);
     case Pixels::jpeg_ls:
       return jpeg_ls(picture);
+    case Pixels::jpeg_ls_exchanged:
+      return jpeg_ls(exchanged);
     default:
       break;
   }
@@ -54,7 +58,7 @@ std::string camera_record(const FlirBlock& options) {
   b.put(0x384, options.seconds, big);
   b.put(0x388, options.milliseconds, big);
   b.put(0x464, options.frame_rate, big);
-  return b.text;
+  return b.text.substr(0, options.camera_length);
 }
 
 }  // namespace
@@ -67,23 +71,31 @@ std::string flir_block(const Picture& picture, const FlirBlock& options) {
   raw.put(2, static_cast<u16>(picture.width), big);
   raw.put(4, static_cast<u16>(picture.height), big);
   raw.text += stored(picture, options);
-  const u16 kinds[] = {static_cast<u16>(big ? 1 : 2), 3, 3, 4};
-  Bytes b;
-  b.text.assign(64 + 3 * 32, '\0');
+  raw.text.append(2 * picture.width * options.extra_rows, '\0');
+  const u16 kinds[] = {static_cast<u16>(big ? 1 : 2), 3, 3, 4, 4};
+  const u16 kind = options.subtype != 0 ? options.subtype : kinds[static_cast<int>(options.pixels)];
+  Bytes b, directory;
+  directory.text.assign(3 * 32, '\0');
+  b.text.assign(64, '\0');
   b.text.replace(0, 3, "FFF");
   b.put(0x14, u32{100}, options.big_header);
-  b.put(0x18, u32{64}, options.big_header);
   b.put(0x1C, u32{3}, options.big_header);
+  if (!options.directory_behind) b.text.append(directory.text.size(), '\0');
   const auto add_record = [&](std::size_t entry, u16 type, u16 subtype, const std::string& bytes) {
-    b.put(64 + 32 * entry, type, options.big_header);
-    b.put(66 + 32 * entry, subtype, options.big_header);
-    b.put(76 + 32 * entry, static_cast<u32>(b.text.size()), options.big_header);
-    b.put(80 + 32 * entry, static_cast<u32>(bytes.size()), options.big_header);
+    directory.put(32 * entry, type, options.big_header);
+    directory.put(2 + 32 * entry, subtype, options.big_header);
+    directory.put(12 + 32 * entry, static_cast<u32>(b.text.size()), options.big_header);
+    directory.put(16 + 32 * entry, static_cast<u32>(bytes.size()), options.big_header);
     b.text += bytes;
   };
   if (options.camera) add_record(0, 0x20, 1, camera_record(options));
-  add_record(2, 1, kinds[static_cast<int>(options.pixels)], raw.text);  // entry 1 stays empty
-  return b.text;
+  add_record(2, 1, kind, raw.text);  // entry 1 stays empty
+  if (options.directory_behind) {
+    b.put(0x18, static_cast<u32>(b.text.size()), options.big_header);
+    return b.text + directory.text;
+  }
+  b.put(0x18, u32{64}, options.big_header);
+  return b.text.replace(64, directory.text.size(), directory.text);
 }
 
 std::string flir_jpeg(const std::string& block, std::size_t part) {
@@ -140,35 +152,61 @@ std::string deflated(const std::string& bytes, bool big) {
   return b.text + packed;
 }
 
-}  // namespace
-
-std::string mat5(const std::vector<Picture>& frames, bool compressed, bool big_endian,
-                 bool doubles) {
-  Bytes b;
-  b.text = "MATLAB 5.0 MAT-file, Platform: GLNXA64, synthetic";
-  b.text.resize(124, ' ');
-  b.add(u16{0x0100}, big_endian);
-  b.text += big_endian ? "MI" : "IM";
-  Bytes rate, data;
-  rate.add(9762.5, big_endian);
-  for (const auto& f : frames)  // the first index is the fastest
+/// The counts of pictures as MATLAB stores them: the first index is the fastest.
+std::string columns(const std::vector<Picture>& frames, bool doubles, bool big) {
+  Bytes data;
+  for (const auto& f : frames)
     for (std::size_t x = 0; x < f.width; ++x)
       for (std::size_t y = 0; y < f.height; ++y) {
         const u16 count = f.counts[y * f.width + x];
         if (doubles)
-          data.add(static_cast<double>(count), big_endian);
+          data.add(static_cast<double>(count), big);
         else
-          data.add(static_cast<float>(count), big_endian);
+          data.add(static_cast<float>(count), big);
       }
+  return data.text;
+}
+
+std::string mat5_head(bool big_endian) {
+  Bytes b;
+  b.text = "MATLAB 5.0 MAT-file, Platform: GLNXA64, synthetic";
+  b.text.resize(124, ' ');
+  b.add(u16{0x0100}, big_endian);
+  return b.text + (big_endian ? "MI" : "IM");
+}
+
+}  // namespace
+
+std::string mat5_frames(const std::vector<Picture>& frames, bool compressed) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < frames.size(); ++i) names.push_back("Frame" + std::to_string(i));
+  std::sort(names.begin(), names.end());
+  std::string text = mat5_head(false);
+  for (const auto& name : names) {
+    const auto& picture = frames[std::stoul(name.substr(5))];
+    Bytes time;
+    for (const double part : {2026.0, 11.0, 28.0, 13.0, 40.0, 7.0, 512.0}) time.add(part);
+    for (const auto& v :
+         {variable(name, {static_cast<u32>(picture.height), static_cast<u32>(picture.width)}, true,
+                   columns({picture}, true, false), false),
+          variable(name + "_DateTime", {1, 7}, true, time.text, false)})
+      text += compressed ? deflated(v, false) : v;
+  }
+  return text;
+}
+
+std::string mat5(const std::vector<Picture>& frames, bool compressed, bool big_endian, bool doubles,
+                 bool colour) {
+  Bytes rate;
+  rate.add(9762.5, big_endian);
   const std::string scalar = variable("rate", {1, 1}, true, rate.text, big_endian);
+  std::vector<u32> shape = {static_cast<u32>(frames[0].height), static_cast<u32>(frames[0].width),
+                            static_cast<u32>(frames.size())};
+  if (colour) shape.insert(shape.begin() + 2, 1);
   const std::string stack =
-      variable("frames",
-               {static_cast<u32>(frames[0].height), static_cast<u32>(frames[0].width),
-                static_cast<u32>(frames.size())},
-               doubles, data.text, big_endian);
-  b.text +=
-      compressed ? deflated(scalar, big_endian) + deflated(stack, big_endian) : scalar + stack;
-  return b.text;
+      variable("frames", shape, doubles, columns(frames, doubles, big_endian), big_endian);
+  return mat5_head(big_endian) +
+         (compressed ? deflated(scalar, big_endian) + deflated(stack, big_endian) : scalar + stack);
 }
 
 }  // namespace meltproof::imaging::synthetic

@@ -1,82 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pages are frames. ImageJ writes stacks beyond 4 GiB with one page only, whose description begins
+// with ImageJ= and says images=N; the other frames follow its pixels without gaps.
 #include "imaging/recording/tiff.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <memory>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-#include <tiffio.h>
+#include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "imaging/recording/bytes.hpp"
+#include "imaging/recording/tiff_pixels.hpp"
 
 namespace meltproof::imaging {
 namespace {
-
-// More than this no compression gains, so a damaged size is told before memory is asked for.
-constexpr std::uint64_t most_gain = 20000, smallest_part = 1 << 16;
-
-/// How the pixels of a page are stored.
-struct Layout {
-  std::uint32_t width = 0, height = 0;
-  std::uint16_t bits = 0, format = SAMPLEFORMAT_UINT;
-  bool operator==(const Layout&) const = default;
-};
-
-struct Tiff {
-  std::shared_ptr<TIFF> handle;
-  std::shared_ptr<std::string> last_error = std::make_shared<std::string>();
-};
-
-int remember(TIFF*, void* text, const char*, const char* format, va_list arguments) {
-  char line[256];
-  if (std::vsnprintf(line, sizeof line, format, arguments) > 0)
-    *static_cast<std::string*>(text) = line;
-  return 1;  // handled: libtiff prints nothing itself
-}
-
-Tiff open_handle(const std::filesystem::path& path, std::uint64_t file_size) {
-  Tiff tiff;
-  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
-      TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), remember, tiff.last_error.get());
-  TIFFOpenOptionsSetWarningHandlerExtR(
-      options.get(), [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
-  // libtiff itself believes what a damaged directory says of its own length.
-  TIFFOpenOptionsSetMaxSingleMemAlloc(
-      options.get(), static_cast<tmsize_t>(std::min<std::uint64_t>(
-                         most_gain * file_size + smallest_part, std::uint64_t{4} << 30)));
-  TIFF* handle = TIFFOpenExt(path.c_str(), "r", options.get());
-  if (!handle)
-    throw InputError(path.string() + ": the TIFF cannot be opened (" + *tiff.last_error +
-                     "); it is damaged or cut off before its directory.");
-  // The text that errors go to must live as long as the handle, so the handle owns it.
-  tiff.handle = std::shared_ptr<TIFF>(handle, [keep = tiff.last_error](TIFF* t) { TIFFClose(t); });
-  return tiff;
-}
-
-Layout layout_of(TIFF* t, const std::filesystem::path& path, std::size_t page) {
-  Layout layout;
-  std::uint16_t samples = 1;
-  TIFFGetField(t, TIFFTAG_IMAGEWIDTH, &layout.width);
-  TIFFGetField(t, TIFFTAG_IMAGELENGTH, &layout.height);
-  TIFFGetFieldDefaulted(t, TIFFTAG_BITSPERSAMPLE, &layout.bits);
-  TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLEFORMAT, &layout.format);
-  TIFFGetFieldDefaulted(t, TIFFTAG_SAMPLESPERPIXEL, &samples);
-  const bool integer = (layout.format == SAMPLEFORMAT_UINT || layout.format == SAMPLEFORMAT_INT) &&
-                       (layout.bits == 8 || layout.bits == 16 || layout.bits == 32);
-  const bool real =
-      layout.format == SAMPLEFORMAT_IEEEFP && (layout.bits == 32 || layout.bits == 64);
-  if (samples != 1 || !(integer || real))
-    throw InputError(path.string() + ": page " + std::to_string(page) + " has " +
-                     std::to_string(samples) + " channels of " + std::to_string(layout.bits) +
-                     " bits; expected one channel of 8, 16 or 32 bits or of floating point.");
-  return layout;
-}
 
 /// Whether all the data that the page points to lie within the file.
 bool is_whole(TIFF* t, std::uint64_t file_size) {
@@ -92,76 +33,126 @@ bool is_whole(TIFF* t, std::uint64_t file_size) {
   return true;
 }
 
-/// Bytes of a strip or tile in memory. @throws InputError if the file cannot hold as much, or if
-/// rows of it have no length.
-std::size_t part_size(TIFF* t, const std::filesystem::path& path, std::size_t page,
-                      std::uint64_t file_size) {
-  const bool tiled = TIFFIsTiled(t) != 0;
-  std::uint32_t rows = 1, columns = 1;
-  TIFFGetFieldDefaulted(t, tiled ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP, &rows);
-  if (tiled) TIFFGetField(t, TIFFTAG_TILEWIDTH, &columns);
-  const tmsize_t size = tiled ? TIFFTileSize(t) : TIFFStripSize(t);
-  const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(0, size));
-  if (bytes == 0 || rows == 0 || columns == 0 || bytes > most_gain * file_size + smallest_part)
-    throw InputError(path.string() + ": frame " + std::to_string(page) + " comes in parts of " +
-                     std::to_string(rows) + " rows and " + std::to_string(bytes) +
-                     " bytes, which the file cannot hold; it is damaged.");
-  return static_cast<std::size_t>(bytes);
+/// What ImageJ says in the description of the first page.
+struct ImageJ {
+  std::uint64_t images = 0;   ///< 0: it says nothing
+  double frame_interval = 0;  ///< s; 0: it says nothing
+};
+
+ImageJ read_imagej(TIFF* t) {
+  const char* description = nullptr;
+  ImageJ says;
+  if (TIFFGetField(t, TIFFTAG_IMAGEDESCRIPTION, &description) != 1 || !description) return says;
+  const std::string text = description;
+  if (!text.starts_with("ImageJ=")) return says;
+  const auto number = [&](const std::string& key, auto& value) {
+    const auto at = text.find("\n" + key + "=");
+    if (at == std::string::npos) return;
+    const char* begin = text.data() + at + key.size() + 2;
+    std::from_chars(begin, text.data() + text.size(), value);
+  };
+  number("images", says.images);
+  number("finterval", says.frame_interval);
+  if (!(std::isfinite(says.frame_interval) && says.frame_interval > 0)) says.frame_interval = 0;
+  // Other units of time than seconds are named.
+  if (text.find("\ntunit=") != std::string::npos && text.find("\ntunit=s") == std::string::npos)
+    says.frame_interval = 0;
+  return says;
 }
 
-void convert(const char* raw, std::size_t count, const Layout& layout, float* into) {
-  const auto as = [&]<class T>(T) {
-    for (std::size_t i = 0; i < count; ++i) {
-      T value;
-      std::memcpy(&value, raw + i * sizeof(T), sizeof(T));
-      into[i] = static_cast<float>(value);
-    }
-  };
-  const bool is_signed = layout.format == SAMPLEFORMAT_INT;
-  if (layout.format == SAMPLEFORMAT_IEEEFP) return layout.bits == 32 ? as(float{}) : as(double{});
-  if (layout.bits == 8) return is_signed ? as(std::int8_t{}) : as(std::uint8_t{});
-  if (layout.bits == 16) return is_signed ? as(std::int16_t{}) : as(std::uint16_t{});
-  return is_signed ? as(std::int32_t{}) : as(std::uint32_t{});
+/// Where the pixels of a page lie if they lie in one piece as they are, or nothing.
+std::optional<std::uint64_t> plain_pixels(TIFF* t, const TiffLayout& layout) {
+  std::uint16_t compression = COMPRESSION_NONE;
+  std::uint64_t* places = nullptr;
+  TIFFGetFieldDefaulted(t, TIFFTAG_COMPRESSION, &compression);
+  if (TIFFIsTiled(t) != 0 || compression != COMPRESSION_NONE || layout.bits % 8 != 0)
+    return std::nullopt;
+  if (TIFFGetField(t, TIFFTAG_STRIPOFFSETS, &places) != 1 || !places) return std::nullopt;
+  std::uint32_t rows = layout.height;
+  TIFFGetFieldDefaulted(t, TIFFTAG_ROWSPERSTRIP, &rows);
+  const std::uint64_t strip = layout.row_bytes(layout.width) * std::uint64_t{rows};
+  for (std::uint32_t i = 1; i < TIFFNumberOfStrips(t); ++i)
+    if (places[i] != places[0] + i * strip) return std::nullopt;
+  return places[0];
 }
 
-void read_page(const Tiff& tiff, const ByteFile& file, const Layout& layout, Frame& frame) {
-  TIFF* t = tiff.handle.get();
-  const auto failed = [&] {
-    throw InputError(file.path().string() + ": frame " + std::to_string(frame.index) +
-                     " cannot be decoded (" + *tiff.last_error + "); the file is damaged.");
-  };
-  std::vector<char> part(part_size(t, file.path(), frame.index, file.size()));
-  if (!TIFFIsTiled(t)) {
-    std::uint32_t rows_per_strip = layout.height;
-    TIFFGetFieldDefaulted(t, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
-    rows_per_strip = std::min(rows_per_strip, layout.height);
-    for (std::uint32_t row = 0; row < layout.height; row += rows_per_strip) {
-      const std::size_t rows = std::min(rows_per_strip, layout.height - row);
-      const std::size_t wanted = rows * layout.width * layout.bits / 8;
-      if (wanted > part.size()) failed();  // libtiff means another layout than these tags
-      const auto got = TIFFReadEncodedStrip(t, TIFFComputeStrip(t, row, 0), part.data(),
-                                            static_cast<tmsize_t>(wanted));
-      if (got < 0 || static_cast<std::size_t>(got) != wanted) failed();
-      convert(part.data(), rows * layout.width, layout,
-              frame.values.data() + std::size_t{row} * layout.width);
-    }
-    return;
+/// The frames of a stack that ImageJ wrote behind a single page.
+Recording open_imagej_stack(RecordingHeader header, const ByteFile& file, const TiffLayout& layout,
+                            std::uint64_t start, std::uint64_t images, bool swapped) {
+  const std::uint64_t frame_bytes = layout.row_bytes(layout.width) * std::uint64_t{layout.height};
+  header.frames = std::min(images, (file.size() - start) / frame_bytes);
+  header.frames_lost = images - header.frames;
+  return {header, [file, layout, start, frame_bytes, swapped](std::size_t index, Frame& frame) {
+            std::string bytes = file.bytes(start + index * frame_bytes, frame_bytes);
+            const std::size_t size = layout.bits / 8;
+            if (swapped)
+              for (auto at = bytes.begin(); at != bytes.end();
+                   at += static_cast<std::ptrdiff_t>(size))
+                std::reverse(at, at + static_cast<std::ptrdiff_t>(size));
+            convert_tiff_row(bytes.data(), frame.values.size(), layout, frame.values.data());
+          }};
+}
+
+/// Size, limits and times, from what the pages say.
+void describe(const TiffLayout& layout, const ImageJ& imagej, std::size_t colour_pages,
+              RecordingHeader& header) {
+  header.width = layout.width;
+  header.height = layout.height;
+  if (layout.format == SAMPLEFORMAT_UINT) {
+    header.saturation = std::ldexp(1.0, layout.bits) - 1;
+    header.under_range = 0;
   }
-  std::uint32_t tile_width = 0, tile_height = 0;
-  TIFFGetField(t, TIFFTAG_TILEWIDTH, &tile_width);
-  TIFFGetField(t, TIFFTAG_TILELENGTH, &tile_height);
-  const std::size_t row_bytes = static_cast<std::size_t>(TIFFTileRowSize(t));
-  if (row_bytes * tile_height > part.size() ||
-      std::size_t{tile_width} * layout.bits / 8 > row_bytes)
-    failed();
-  for (std::uint32_t y = 0; y < layout.height; y += tile_height)
-    for (std::uint32_t x = 0; x < layout.width; x += tile_width) {
-      if (TIFFReadTile(t, part.data(), x, y, 0, 0) < 0) failed();
-      const std::size_t columns = std::min(tile_width, layout.width - x);
-      for (std::uint32_t row = 0; row < std::min(tile_height, layout.height - y); ++row)
-        convert(part.data() + row * row_bytes, columns, layout,
-                frame.values.data() + std::size_t{y + row} * layout.width + x);
+  if (colour_pages > 0)
+    header.notes.push_back(
+        fmt::format("{} coloured pages are no signal and were left out.", colour_pages));
+  if (layout.white_is_zero)
+    header.notes.push_back(
+        "The file says that its lowest number is white, so the counts are turned round.");
+  if (imagej.frame_interval > 0)
+    header.frame_rate = 1 / imagej.frame_interval;
+  else
+    header.notes.push_back(
+        "TIFF stores no times: frame rate and integration time are unknown unless they are given.");
+}
+
+/// What the chain of pages holds.
+struct Pages {
+  /// Of the directories: a page is then reached at once, not by counting.
+  std::vector<std::uint64_t> places;
+  std::optional<TiffLayout> layout;
+  std::size_t lost = 0, coloured = 0;
+};
+
+Pages read_pages(TIFF* t, const ByteFile& file) {
+  Pages pages;
+  const std::string name = file.path().string();
+  for (std::size_t page = 0;; ++page) {
+    std::uint32_t kind = 0;
+    TIFFGetFieldDefaulted(t, TIFFTAG_SUBFILETYPE, &kind);
+    // Previews are no frames.
+    const auto here = kind & FILETYPE_REDUCEDIMAGE ? std::nullopt : tiff_layout(t, name, page);
+    if (here) {
+      if (!pages.layout) pages.layout = here;
+      const auto& first = *pages.layout;
+      if (*here != first)
+        throw InputError(fmt::format(
+            "{}: page {} is {} x {} pixels of {} bits, but the first is {} x {} of {}; the frames "
+            "of a recording are alike.",
+            name, page, here->width, here->height, here->bits, first.width, first.height,
+            first.bits));
+      if (is_whole(t, file.size()))
+        pages.places.push_back(TIFFCurrentDirOffset(t));
+      else
+        ++pages.lost;
+    } else if (!(kind & FILETYPE_REDUCEDIMAGE)) {
+      ++pages.coloured;
     }
+    if (TIFFLastDirectory(t)) return pages;
+    if (!TIFFReadDirectory(t)) {  // the chain of pages is cut off: at least one more was announced
+      ++pages.lost;
+      return pages;
+    }
+  }
 }
 
 }  // namespace
@@ -175,60 +166,36 @@ bool is_tiff(std::string_view first_bytes) {
 
 Recording open_tiff(const std::filesystem::path& path) {
   const ByteFile file(path);
-  const Tiff tiff = open_handle(path, file.size());
-  TIFF* t = tiff.handle.get();
+  const TiffHandle tiff = open_tiff_handle(path, file.size());
+  TIFF* t = tiff.tiff.get();
   RecordingHeader header;
   header.path = path;
-  std::vector<std::uint64_t>
-      places;  // of the directories: a page is then reached at once, not by counting
-  std::optional<Layout> layout;
-  for (std::size_t page = 0;; ++page) {
-    std::uint32_t kind = 0;
-    TIFFGetFieldDefaulted(t, TIFFTAG_SUBFILETYPE, &kind);
-    if (!(kind & FILETYPE_REDUCEDIMAGE)) {  // previews are no frames
-      const Layout here = layout_of(t, path, page);
-      if (!layout) layout = here;
-      if (here != *layout)
-        throw InputError(path.string() + ": page " + std::to_string(page) + " is " +
-                         std::to_string(here.width) + " x " + std::to_string(here.height) +
-                         " pixels of " + std::to_string(here.bits) + " bits, but the first is " +
-                         std::to_string(layout->width) + " x " + std::to_string(layout->height) +
-                         " of " + std::to_string(layout->bits) +
-                         "; the frames of a recording are alike.");
-      if (is_whole(t, file.size()))
-        places.push_back(TIFFCurrentDirOffset(t));
-      else
-        ++header.frames_lost;
-    }
-    if (TIFFLastDirectory(t)) break;
-    if (!TIFFReadDirectory(t)) {  // the chain of pages is cut off: at least one more was announced
-      ++header.frames_lost;
-      break;
-    }
-  }
-  if (layout) {
-    header.width = layout->width;
-    header.height = layout->height;
-    check_frame_size(header);
-    if (std::uint64_t{layout->width} * layout->height * layout->bits / 8 >
-        most_gain * file.size() + smallest_part)
-      throw InputError(path.string() + ": the pages are said to have " +
-                       std::to_string(layout->width) + " x " + std::to_string(layout->height) +
-                       " pixels, which the file cannot hold; it is damaged.");
-    if (layout->format == SAMPLEFORMAT_UINT) {
-      header.saturation = static_cast<double>((std::uint64_t{1} << layout->bits) - 1);
-      header.under_range = 0;
-    }
-  }
-  header.frames = places.size();
-  header.notes.push_back(
-      "TIFF stores no times: frame rate and integration time are unknown unless they are given.");
-  return {header, [tiff, file, path, places, layout](std::size_t index, Frame& frame) {
-            if (!TIFFSetSubDirectory(tiff.handle.get(), places[index]))
+  const ImageJ imagej = read_imagej(t);
+  const Pages pages = read_pages(t, file);
+  if (!pages.layout && pages.coloured > 0)
+    throw InputError(path.string() +
+                     ": the pictures are coloured, and colours are no signal; export the camera's "
+                     "grey values as one channel.");
+  header.frames = pages.places.size();
+  header.frames_lost = pages.lost;
+  if (!pages.layout) return {header, nullptr};
+  const TiffLayout layout = *pages.layout;
+  describe(layout, imagej, pages.coloured, header);
+  check_frame_size(header);
+  if (!tiff_can_hold(layout.row_bytes(layout.width) * std::uint64_t{layout.height}, file.size()))
+    throw InputError(fmt::format(
+        "{}: the pages are said to have {} x {} pixels, which the file cannot hold; it is damaged.",
+        path.string(), layout.width, layout.height));
+  if (pages.places.size() == 1 && pages.lost == 0 && imagej.images > 1)
+    if (const auto start = plain_pixels(t, layout))
+      return open_imagej_stack(header, file, layout, *start, imagej.images, TIFFIsByteSwapped(t));
+  return {header, [tiff, size = file.size(), path, places = pages.places, layout](std::size_t index,
+                                                                                  Frame& frame) {
+            if (!TIFFSetSubDirectory(tiff.tiff.get(), places[index]))
               throw InputError(path.string() + ": page " + std::to_string(index) +
                                " cannot be reached (" + *tiff.last_error +
                                "); the file is damaged.");
-            read_page(tiff, file, *layout, frame);
+            read_tiff_page(tiff, path, size, layout, frame);
           }};
 }
 

@@ -7,6 +7,7 @@ files holds more than one frame (by its first bytes). Otherwise its files are th
 """
 
 import argparse
+import concurrent.futures
 import csv
 import json
 import math
@@ -136,13 +137,27 @@ def tracks_of(folder):
 
 
 def measure(folder, track, output):
-    """One track through pipelines/process_recording.sh. @return its exit status."""
+    """One track through pipelines/process_recording.sh. @return what it said, with its exit status."""
     environment = {**os.environ, "RECORDING": str(folder / track["file"]), "OUTPUT": str(output)}
     if "calibration" in track:
         environment["CALIBRATION"] = str(folder / track["calibration"])
     if "speed_m_s" in track:
         environment["SCAN_SPEED"] = f"{track['speed_m_s']} m/s"
-    return subprocess.run([str(ROOT / "pipelines/process_recording.sh")], env=environment, check=False).returncode
+    return subprocess.run([str(ROOT / "pipelines/process_recording.sh")], env=environment, check=False, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def measure_all(folder, tracks, places):
+    """Every track's outcome in order, as soon as it is there; as many at once as there are processors. Nobody is waited
+    for that was not begun when the caller stops."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        running = [pool.submit(measure, folder, track, place) for track, place in zip(tracks, places)]
+        try:
+            for task in running:
+                yield task.result()
+        finally:
+            for task in running:
+                task.cancel()
 
 
 def join(program, summaries, output):
@@ -171,13 +186,12 @@ def process(folder, output):
     import pages
 
     names = [pages.plain(track["file"]) for track in tracks]
-    for i, (track, name) in enumerate(zip(tracks, names)):
-        print(f"== track {i + 1} of {len(tracks)}: {track['file']}", flush=True)
-        place = output / (name if names.count(name) == 1 else f"{i + 1}_{name}")
-        status = measure(folder, track, place)
-        if status not in (0, 3, 4):
-            raise Refused(f"the recording '{track['file']}' could not be processed (status {status}); the reason "
-                          "stands above. Mend it or leave it out in campaign.toml.")
+    places = [output / (name if names.count(name) == 1 else f"{i + 1}_{name}") for i, name in enumerate(names)]
+    for i, (track, place, done) in enumerate(zip(tracks, places, measure_all(folder, tracks, places))):
+        print(f"== track {i + 1} of {len(tracks)}: {track['file']}\n{done.stdout}", end="", flush=True)
+        if done.returncode not in (0, 3, 4):
+            raise Refused(f"the recording '{track['file']}' could not be processed (status {done.returncode}); the "
+                          "reason stands above. Mend it or leave it out in campaign.toml.")
         summary = json.loads((place / "summary.json").read_text(encoding="utf-8"))
         if not summary["melt_pool_found"]:
             skipped.append({"file": track["file"], "reason": summary["reason"]})

@@ -21,7 +21,16 @@ def svg_of(figure):
     file = io.StringIO()
     figure.savefig(file, format="svg", metadata={"Date": None, "Creator": "Meltproof"})
     style.plt.close(figure)
-    return file.getvalue()
+    return definitions_first(file.getvalue())
+
+
+def definitions_first(svg):
+    """The same graphic with all its <defs> in front. WeasyPrint looks for every glyph and marker from the beginning on,
+    and with matplotlib's order it walks through the whole drawing each time."""
+    definitions = re.findall(r"<defs>.*?</defs>", svg, flags=re.DOTALL)
+    bare = re.sub(r"\s*<defs>.*?</defs>", "", svg, flags=re.DOTALL)
+    begin = bare.index(">", bare.index("<svg")) + 1
+    return bare[:begin] + "\n" + "\n".join(definitions) + bare[begin:]
 
 
 def data_uri(content, kind):

@@ -20,14 +20,21 @@ import campaign  # noqa: E402
 SCALE = "data/scales/synthetic_across_x.h5"
 
 
-def film(path, power):
+def film(*films):
+    """Films analytic pools at the same time: a path and an absorbed power each."""
+    cameras = [begin_film(path, power) for path, power in films]
+    for camera in cameras:
+        said = camera.communicate()[1]
+        assert camera.returncode == 0, said
+
+
+def begin_film(path, power):
     settings = path.with_suffix(".settings.toml")
     settings.write_text(f'[view]\nsurface_row = 19.6\n[rosenthal]\nview = "top"\nframes = 52\n'
                         f'absorbed_power = "{power} W"\n')
-    done = subprocess.run([str(BIN / "meltproof-camera"), "--rosenthal", "--settings", str(settings), "--seed", "3",
-                           "--output", str(path)], capture_output=True, text=True, cwd=ROOT, check=False)
-    assert done.returncode == 0, done.stderr
-    settings.unlink()
+    return subprocess.Popen([str(BIN / "meltproof-camera"), "--rosenthal", "--settings", str(settings), "--seed", "3",
+                             "--output", str(path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            cwd=ROOT)
 
 
 def process(**variables):
@@ -42,7 +49,7 @@ class OneRecording(unittest.TestCase):
     def setUpClass(cls):
         cls.kept = tempfile.TemporaryDirectory()
         cls.folder = Path(cls.kept.name)
-        film(cls.folder / "a pool.h5", 62)
+        film((cls.folder / "a pool.h5", 62))
         cls.output = cls.folder / "out"
         cls.done = process(RECORDING=str(cls.folder / "a pool.h5"), OUTPUT=str(cls.output), CALIBRATION=SCALE,
                            GRADUATION="100 um", GRADUATION_IS="period", MATERIAL="316L")
@@ -176,8 +183,9 @@ class Folders(unittest.TestCase):
             campaign.tracks_of(self.folder)
 
     def test_a_campaign_draws_length_against_content(self):
-        for name, power in (("a", 58), ("b", 60), ("c", 66)):
-            film(self.folder / f"{name}.h5", power)
+        film(*((self.folder / f"{name}.h5", power) for name, power in (("a", 58), ("b", 60), ("c", 66))))
+        for settings in self.folder.glob("*.toml"):
+            settings.unlink()
         (self.folder / "campaign.csv").write_text(
             "file,additive_wt_percent,speed_m_s\na.h5,0,0.375\nb.h5,0,0.375\nc.h5,5,0.375\n")
         output = self.folder / "out"
