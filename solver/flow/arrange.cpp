@@ -149,8 +149,7 @@ void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
                    list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]), slot);
   });
   // A wall listens to the melt only, which is a small part of its list.
-  std::vector<std::uint8_t> is_melt(
-      list_.void_index + std::size_t{1} + behind_walls_.size(), 0);
+  std::vector<std::uint8_t> is_melt(list_.void_index + std::size_t{1} + behind_walls_.size(), 0);
   for (std::size_t s = 0; s < particle_.size(); ++s) {
     is_melt[s] = role_[particle_[s]] == 1 ? 1 : 0;
   }

@@ -244,7 +244,7 @@ class FreeSurfaceFlow {
     const std::size_t chunk = members.size() / 4 + 1;
     for (std::size_t from = 0; from < members.size(); from += chunk) {
       for_each_sum(std::min(chunk, members.size() - from),
-                        [&](std::size_t k) { body(members[from + k]); });
+                   [&](std::size_t k) { body(members[from + k]); });
       if (part == Part::inner) {
         halo_.progress();
       }

@@ -69,11 +69,10 @@ void FreeSurfaceFlow::leave_disorder_out() {
   compute_and_exchange(
       Halo::metal_near_melt, 1,
       [&](Part part) {
-        for_each_of(liquid_parts_, part, liquid_.size(),
-                    [&](std::size_t k) {
-                      look(liquid_slot_[k], near_.index.data() + near_.first[k],
-                           near_.index.data() + near_.last[k]);
-                    });
+        for_each_of(liquid_parts_, part, liquid_.size(), [&](std::size_t k) {
+          look(liquid_slot_[k], near_.index.data() + near_.first[k],
+               near_.index.data() + near_.last[k]);
+        });
         for_each_of(wall_parts_, part, wall_.size(), [&](std::size_t k) {
           const std::uint32_t i = wall_slot_[k];
           look(i, list_.index.data() + list_.first[i], list_.index.data() + list_.last[i]);

@@ -78,10 +78,10 @@ struct Coordinates {
   std::vector<double> x, y, z;
 };
 
-/// **Of n candidates, in their order, those nearer to a point than the larger of two limits**: writes
-/// their `index` to `out` and returns how many.
-/// @param at x, y, z, m; @param own_limit, limit of the point and of each candidate, m2; @param self
-/// an index that is left out; @param out with room for n and one pack of 8 more.
+/// **Of n candidates, in their order, those nearer to a point than the larger of two limits**:
+/// writes their `index` to `out` and returns how many.
+/// @param at x, y, z, m; @param own_limit, limit of the point and of each candidate, m2; @param
+/// self an index that is left out; @param out with room for n and one pack of 8 more.
 inline std::size_t candidates_within(const std::array<double, 3>& at, double own_limit,
                                      const Coordinates& place, const double* limit,
                                      const std::uint32_t* index, std::size_t n, std::uint32_t self,
@@ -98,11 +98,12 @@ inline std::size_t candidates_within(const std::array<double, 3>& at, double own
     const __m512d squared = _mm512_add_pd(
         _mm512_add_pd(_mm512_mul_pd(dx, dx), _mm512_mul_pd(dy, dy)), _mm512_mul_pd(dz, dz));
     const __m256i who = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index + k));
-    const __mmask8 near = _mm512_cmp_pd_mask(
-        squared, _mm512_max_pd(own, _mm512_loadu_pd(limit + k)), _CMP_LT_OQ);
+    const __mmask8 near =
+        _mm512_cmp_pd_mask(squared, _mm512_max_pd(own, _mm512_loadu_pd(limit + k)), _CMP_LT_OQ);
     const __mmask8 keep = near & _mm256_cmpneq_epi32_mask(who, no);
     // Pushed together in a register: the processor's own compressing store is slow.
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + end), _mm256_maskz_compress_epi32(keep, who));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + end),
+                        _mm256_maskz_compress_epi32(keep, who));
     end += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(keep)));
   }
 #endif

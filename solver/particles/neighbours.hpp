@@ -18,8 +18,8 @@ ListPlace list_place(std::size_t place);
 /// For every particle the indices of its neighbours without itself: particles count from 0, ghosts
 /// follow behind them, and the void record, which takes part in nothing, is the last index. Each
 /// list is in the order of Particles::before(), that is in space-filling order, and padded with the
-/// void to whole lanes. Only particles of this rank have one. Quick to read; what a run keeps for all
-/// of its particles stands in PackedLists.
+/// void to whole lanes. Only particles of this rank have one. Quick to read; what a run keeps for
+/// all of its particles stands in PackedLists.
 struct NeighbourList {
   std::vector<ListPlace> first;  ///< list of i begins at index[first[i]]; size n + 1
   std::vector<ListPlace> last;   ///< and ends before index[last[i]]; size n. Lists made in one go

@@ -91,8 +91,7 @@ void find_awake(const std::vector<HeatRecord>& records, const PackedLists& neigh
     if (!cells.near(records[i])) {
       return;
     }
-    involved[i] =
-        neighbours.any(i, [&](std::uint32_t j) { return records[j].awake > 0; }) ? 1 : 0;
+    involved[i] = neighbours.any(i, [&](std::uint32_t j) { return records[j].awake > 0; }) ? 1 : 0;
   });
   active.clear();
   for (std::uint32_t i = 0; i < n; ++i) {

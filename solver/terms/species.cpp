@@ -7,9 +7,9 @@
 
 namespace meltproof::solver {
 
-void diffuse(const SpeciesRecords& all, const PackedLists& neighbours,
-             const QuinticSpline& kernel, SpeciesFactor factor,
-             const std::vector<std::uint32_t>& members, std::vector<double>& rate) {
+void diffuse(const SpeciesRecords& all, const PackedLists& neighbours, const QuinticSpline& kernel,
+             SpeciesFactor factor, const std::vector<std::uint32_t>& members,
+             std::vector<double>& rate) {
   const SpeciesRecord* records = all.records.data();
   const double weight = factor == SpeciesFactor::consistent ? 2.0 : 4.0;
   rate.resize(members.size());
