@@ -163,7 +163,8 @@ def table_text(result):
     lines = ["  ".join([row[0].ljust(widths[0]), *(row[c].rjust(widths[c]) for c in (1, 2, 3)), row[4]]).rstrip()
              for row in rows]
     step = result["details"].get("step", {})
-    for name, title in (("as_tracks_run", "as tracks run"), ("nothing_skipped", "nothing skipped")):
+    for name, title in (("as_tracks_run", "as tracks run"), ("nothing_skipped", "nothing skipped"),
+                        ("everything_computed", "everything computed")):
         if shares := step.get(name, {}).get("share_of_time"):
             lines.append(f"time of a step, {title}: " + ", ".join(
                 f"{part} {100 * share:.0f} %" for part, share in sorted(shares.items(), key=lambda s: -s[1])))

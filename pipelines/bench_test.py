@@ -69,7 +69,7 @@ class Bench(unittest.TestCase):
             self.assertTrue(made["unit"] and made["how"])
         step = result["details"]["step"]
         self.assertGreater(step["liquid_particles"], 0)
-        for engine in ("as_tracks_run", "nothing_skipped"):
+        for engine in ("as_tracks_run", "nothing_skipped", "everything_computed"):
             self.assertAlmostEqual(sum(step[engine]["share_of_time"].values()), 1, 9)
         self.assertEqual(result["provenance"]["program"], "meltproof-bench")
 

@@ -36,8 +36,8 @@ struct Stage {
 const std::vector<Stage>& bench_stages();
 
 /// **Whole steps**: the engine as tracks run against the same engine with everything switched off
-/// that lets it pass over work; both on one thread from the same state, in turns, so that what else
-/// the machine does falls on both.
+/// that lets it pass over work, and against one that gives all solid the passes of walls as well;
+/// all on one thread from the same state, in turns, so that what else the machine does falls on all.
 StageResult whole_step_stage(const DevelopedPool& pool, const BenchSettings& settings);
 
 /// The model, and the state to begin from, with which no pass leaves out a particle that it could

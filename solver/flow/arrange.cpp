@@ -32,6 +32,14 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
       }
     });
   }
+  if (settings_.walls_everywhere) {
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (role_[i] == 0 && particles.phase[i] == Phase::solid && particles.home[i] == Home::here) {
+        role_[i] = 2;
+        wall_.push_back(i);
+      }
+    }
+  }
   if (!halo_.empty()) {
     halo_.give_back(
         Halo::everybody, 1, [&](std::uint32_t i, double* out) { *out = role_[i] == 2 ? 1 : 0; },

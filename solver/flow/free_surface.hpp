@@ -60,6 +60,9 @@ struct FlowSettings {
   /// most 0.2 rho c^2: in splashes |grad v| has no bound.
   double shifting = 10;
   double skin = 0.5;  ///< of the Verlet lists, in spacings
+  /// All solid counts as wall, melt near it or not, so that every particle has the passes of its
+  /// kind. For measuring what is gained; on one rank.
+  bool walls_everywhere = false;
 };
 
 /// What the melt is like at one particle.
