@@ -169,12 +169,11 @@ std::vector<std::size_t> Ranks::exchange_sizes(const std::vector<std::size_t>& s
   return {in.begin(), in.end()};
 }
 
-void Ranks::exchange_bytes(const void* from, const std::vector<std::size_t>& sizes, void* to,
+void Ranks::exchange_bytes(const std::vector<std::span<const std::byte>>& from, void* to,
                            const std::vector<std::size_t>& arriving) const {
-  const auto* source = static_cast<const std::byte*>(from);
   auto* target = static_cast<std::byte*>(to);
   if (alone()) {
-    std::copy_n(source, sizes[0], target);
+    std::copy(from[0].begin(), from[0].end(), target);
     return;
   }
   // Words of eight bytes, point to point: counts of MPI are ints, and most pairs of ranks have
@@ -193,11 +192,10 @@ void Ranks::exchange_bytes(const void* from, const std::vector<std::size_t>& siz
                 MPI_COMM_WORLD, &requests.emplace_back());
     }
   }
-  at = 0;
-  for (std::size_t r = 0; r < sizes.size(); at += sizes[r++]) {
-    if (sizes[r] > 0) {
-      MPI_Isend(source + at, count(sizes[r]), MPI_UINT64_T, static_cast<int>(r), 1, MPI_COMM_WORLD,
-                &requests.emplace_back());
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    if (!from[r].empty()) {
+      MPI_Isend(from[r].data(), count(from[r].size()), MPI_UINT64_T, static_cast<int>(r), 1,
+                MPI_COMM_WORLD, &requests.emplace_back());
     }
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);

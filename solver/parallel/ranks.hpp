@@ -65,19 +65,19 @@ class Ranks {
   std::vector<T> exchange(const std::vector<std::vector<T>>& to) const {
     // What is sent is counted in words.
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 8 == 0);
-    std::vector<T> all;
-    std::vector<std::size_t> counts;
+    std::vector<std::span<const std::byte>> parts;
+    std::vector<std::size_t> sizes;
     for (const auto& part : to) {
-      counts.push_back(part.size() * sizeof(T));
-      all.insert(all.end(), part.begin(), part.end());
+      parts.push_back(std::as_bytes(std::span(part)));
+      sizes.push_back(parts.back().size());
     }
-    const auto arriving = exchange_sizes(counts);
+    const auto arriving = exchange_sizes(sizes);
     std::size_t bytes = 0;
     for (const std::size_t b : arriving) {
       bytes += b;
     }
     std::vector<T> result(bytes / sizeof(T));
-    exchange_bytes(all.data(), counts, result.data(), arriving);
+    exchange_bytes(parts, result.data(), arriving);
     return result;
   }
 
@@ -103,7 +103,7 @@ class Ranks {
 
  private:
   std::vector<std::size_t> exchange_sizes(const std::vector<std::size_t>& sizes) const;
-  void exchange_bytes(const void* from, const std::vector<std::size_t>& sizes, void* to,
+  void exchange_bytes(const std::vector<std::span<const std::byte>>& from, void* to,
                       const std::vector<std::size_t>& arriving) const;
 
   int size_ = 1, rank_ = 0;

@@ -103,6 +103,7 @@ void Engine::divide_anew(bool sort) {
   for (const Traveller& t : own) {
     to[static_cast<std::size_t>(decomposition_.owner(t.position))].push_back(t);
   }
+  own = {};  // all of it is in `to`: particles of a rank are many, and this is where most are held
   own = ranks().exchange(to);
   for (Traveller& t : own) {
     t.rank = ranks().rank();

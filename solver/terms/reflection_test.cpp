@@ -3,6 +3,7 @@
 // twice, one of 60 degrees three times.
 #include "solver/terms/reflection.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -111,6 +112,38 @@ TEST(Reflection, ASteepWallDoesNotStandInItsOwnLight) {
                       .exposure = 1};
     const Seen seen = shine(wall, laser, {48 * dx, 40 * dx, 0});
     EXPECT_NEAR(seen.budget.absorbed, (100 - seen.budget.missed) * share, 0.5) << steepness;
+  }
+}
+
+TEST(Reflection, LightDoesNotHitTheSurfaceThatItLeaves) {
+  // Along a steep wall it passes bumps as high as itself, of the lattice and of particles that
+  // stand a tenth of a spacing aside, as melt's do. They are the wall; with nothing else around it
+  // hits once. Were they taken for something in the way, 5 to 22 % more would be absorbed.
+  std::uint64_t state = 1;
+  const auto aside = [&](double most) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return 2 * most * (static_cast<double>(state >> 40U) / static_cast<double>(1U << 24U) - 0.5);
+  };
+  for (const auto& [steepness, incidence, disorder] :
+       {std::array{2.2, 0.5, 0.0}, std::array{4.0, 0.5, 0.0}, std::array{7.0, 0.5, 0.0},
+        std::array{3.1, 0.0, 0.1}, std::array{5.3, 0.0, 0.1}, std::array{4.0, 0.5, 0.1}}) {
+    Particles wall = metal(48, 40, 60, [steepness = steepness](const Vector& at) {
+      return at[2] < -steepness * (at[1] - 50e-6);
+    });
+    for (Vector& at : wall.position) {
+      for (double& x : at) {
+        x += aside(disorder) * dx;
+      }
+    }
+    const Laser laser{.power = 100,
+                      .radius = 10e-6,
+                      .start_x = 120e-6,
+                      .y = 50e-6 + 100e-6 / steepness,
+                      .exposure = 1,
+                      .incidence = incidence};
+    const LaserBudget budget = shine(wall, laser, {48 * dx, 40 * dx, 0}).budget;
+    EXPECT_NEAR(budget.absorbed, (100 - budget.missed) * share, 0.001 * 100 * share)
+        << steepness << " " << incidence << " " << disorder;
   }
 }
 
