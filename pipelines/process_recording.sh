@@ -38,22 +38,30 @@ bin=${MELTPROOF_BIN:-build/release/bin}
 name=$(basename -- "$recording" | tr -s '[:space:]' '_')
 name=${name%_} # the newline that basename writes
 output=${OUTPUT:-reports/recordings/$name}
+made=0
+[ -d "$output" ] || made=1
+
+# From the picture of a scale to the calibration, which all else rests on: without it nothing is begun.
+calibrate() {
+  echo "== calibration $calibration"
+  "$bin/meltproof-calibrate" "$calibration" --output "$output/calibration.json" --graduation "$GRADUATION" \
+    --graduation-is "$GRADUATION_IS" && return
+  if [ $made = 1 ]; then rmdir -- "$output" 2>/dev/null || true; fi
+  refuse "'$calibration' gives no pixel size; the reason stands above."
+}
+
 if [ -d "$recording" ] && [ "$(pipelines/python.sh pipelines/recording_report/campaign.py --decide "$recording")" = campaign ]; then
   if [[ -n $calibration && $calibration != *.json ]]; then # once for all tracks
-    pipelines/stage.sh 'calibration' "$bin/meltproof-calibrate" "$calibration" \
-      --output "$output/calibration.json" --graduation "$GRADUATION" --graduation-is "$GRADUATION_IS"
+    calibrate
     export CALIBRATION=$output/calibration.json
   fi
   exec pipelines/python.sh pipelines/recording_report/campaign.py "$recording" --output "$output"
 fi
-made=0
-[ -d "$output" ] || made=1
 mkdir -p -- "$output"
 
 options=(--film)
 if [[ -n $calibration && $calibration != *.json ]]; then
-  pipelines/stage.sh 'calibration' "$bin/meltproof-calibrate" "$calibration" \
-    --output "$output/calibration.json" --graduation "$GRADUATION" --graduation-is "$GRADUATION_IS"
+  calibrate
   calibration=$output/calibration.json
 fi
 [ -n "$calibration" ] && options+=(--calibration "$calibration")

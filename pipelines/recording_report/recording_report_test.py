@@ -2,6 +2,7 @@
 """`make process` on synthetic recordings of meltproof-camera: the report says what was measured, of what kind the
 recording is and where every parameter comes from; a folder is one recording or a campaign by its content."""
 
+import concurrent.futures
 import csv
 import json
 import os
@@ -44,21 +45,40 @@ def process(**variables):
                           env=environment, check=False)
 
 
+class Runs:
+    """What takes long, begun together before the first test: the recordings filmed, then a pool, a recording without
+    one and a campaign each processed."""
+
+    def __init__(self, folder):
+        self.pool, self.tracks = folder / "a pool.h5", folder / "tracks"
+        self.tracks.mkdir()
+        film((self.pool, 62), *((self.tracks / f"{name}.h5", power)
+                                for name, power in (("a", 58), ("b", 60), ("c", 66))))
+        (self.tracks / "campaign.csv").write_text(
+            "file,additive_wt_percent,speed_m_s\na.h5,0,0.375\nb.h5,0,0.375\nc.h5,5,0.375\n")
+        self.output, self.bare, self.joined = folder / "out", folder / "bare", folder / "joined"
+        with concurrent.futures.ThreadPoolExecutor() as together:
+            one, without, campaign_run = (together.submit(process, **variables) for variables in (
+                {"RECORDING": str(self.pool), "OUTPUT": str(self.output), "CALIBRATION": SCALE, "GRADUATION": "100 um",
+                 "GRADUATION_IS": "period", "MATERIAL": "316L"},
+                {"RECORDING": SCALE, "OUTPUT": str(self.bare)},
+                {"RECORDING": str(self.tracks), "OUTPUT": str(self.joined)}))
+        self.one, self.without, self.campaign = one.result(), without.result(), campaign_run.result()
+
+
+def setUpModule():
+    global KEPT, RUNS
+    KEPT = tempfile.TemporaryDirectory()
+    RUNS = Runs(Path(KEPT.name))
+
+
+def tearDownModule():
+    KEPT.cleanup()
+
+
 class OneRecording(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.kept = tempfile.TemporaryDirectory()
-        cls.folder = Path(cls.kept.name)
-        film((cls.folder / "a pool.h5", 62))
-        cls.output = cls.folder / "out"
-        cls.done = process(RECORDING=str(cls.folder / "a pool.h5"), OUTPUT=str(cls.output), CALIBRATION=SCALE,
-                           GRADUATION="100 um", GRADUATION_IS="period", MATERIAL="316L")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.kept.cleanup()
-
     def setUp(self):
+        self.done, self.output = RUNS.one, RUNS.output
         self.assertEqual(self.done.returncode, 0, self.done.stdout + self.done.stderr)
         self.page = (self.output / "report.html").read_text()
         self.summary = json.loads((self.output / "summary.json").read_text())
@@ -122,13 +142,10 @@ class OneRecording(unittest.TestCase):
 
 class WithoutAPool(unittest.TestCase):
     def test_the_report_says_why(self):
-        with tempfile.TemporaryDirectory() as folder:
-            output = Path(folder) / "out"
-            done = process(RECORDING=SCALE, OUTPUT=str(output))
-            self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-            page = (output / "report.html").read_text()
-            self.assertIn("<strong>No melt pool.</strong>", page)
-            self.assertNotIn("<h2>Uncertainty</h2>", page)
+        self.assertEqual(RUNS.without.returncode, 3, RUNS.without.stdout + RUNS.without.stderr)
+        page = (RUNS.bare / "report.html").read_text()
+        self.assertIn("<strong>No melt pool.</strong>", page)
+        self.assertNotIn("<h2>Uncertainty</h2>", page)
 
     def test_an_unknown_material_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -136,6 +153,32 @@ class WithoutAPool(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn("neither a file nor a material", done.stderr)
             self.assertFalse((Path(folder) / "out").exists())
+
+
+class WhatCannotBeUsed(unittest.TestCase):
+    def test_it_is_said_with_its_name_and_nothing_is_left_behind(self):
+        with tempfile.TemporaryDirectory() as kept:
+            folder = Path(kept)
+            (folder / "notes.ptw").write_text("Monday: cleaned the lens.\n")
+            (folder / "empty.seq").write_bytes(b"")
+            (folder / "other.json").write_text('{"x": 1}')
+            (folder / "pool.h5").symlink_to(RUNS.pool)
+            scale = {"GRADUATION": "100 um", "GRADUATION_IS": "period"}
+            for variables, said in (
+                    ({"RECORDING": "notes.ptw"}, "its content is text"),
+                    ({"RECORDING": "empty.seq"}, "the file is empty"),
+                    ({"RECORDING": "gone.ptw"}, "does not exist"),
+                    ({"RECORDING": "pool.h5", "CALIBRATION": "other.json"}, "pixel_size_x_um is missing"),
+                    ({"RECORDING": "pool.h5", "CALIBRATION": "pool.h5"}, "say also its graduation"),
+                    ({"RECORDING": "pool.h5", "CALIBRATION": "notes.ptw", **scale}, "notes.ptw' gives no pixel size"),
+                    # A pool is no scale: no result of the calibration, and for the whole a wrong input.
+                    ({"RECORDING": "pool.h5", "CALIBRATION": "pool.h5", **scale}, "pool.h5' gives no pixel size")):
+                given = {key: str(folder / text) if key in ("RECORDING", "CALIBRATION") else text
+                         for key, text in variables.items()}
+                done = process(OUTPUT=str(folder / "out"), **given)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn(said, done.stderr)
+                self.assertFalse((folder / "out").exists(), said)
 
 
 class Folders(unittest.TestCase):
@@ -183,13 +226,7 @@ class Folders(unittest.TestCase):
             campaign.tracks_of(self.folder)
 
     def test_a_campaign_draws_length_against_content(self):
-        film(*((self.folder / f"{name}.h5", power) for name, power in (("a", 58), ("b", 60), ("c", 66))))
-        for settings in self.folder.glob("*.toml"):
-            settings.unlink()
-        (self.folder / "campaign.csv").write_text(
-            "file,additive_wt_percent,speed_m_s\na.h5,0,0.375\nb.h5,0,0.375\nc.h5,5,0.375\n")
-        output = self.folder / "out"
-        done = process(RECORDING=str(self.folder), OUTPUT=str(output))
+        done, output = RUNS.campaign, RUNS.joined
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("== track 3 of 3: c.h5", done.stdout)
         with (output / "campaign.csv").open() as file:
