@@ -89,6 +89,37 @@ TEST(Surface, ColumnsWithoutMetalStayBareUntilSomeMovesThere) {
   expect_same(search, particles, {});
 }
 
+// Between ranks particles come and go, and entries are used again: as Engine::rebuild_lists() tells
+// the search.
+TEST(Surface, WhoComesToAFreeEntryIsSeenAndWhoLeavesIsNot) {
+  std::mt19937 random(11);
+  Particles particles = block(random);
+  std::uniform_int_distribution<std::uint32_t> any(
+      0, static_cast<std::uint32_t>(particles.size()) - 1);
+  std::uniform_real_distribution<double> where(0.5 * dx, (side - 0.5) * dx), high(-5 * dx, 2 * dx);
+  for (std::uint32_t i = 0; i < particles.size(); i += 7) {
+    particles.home[i] = Home::nowhere;
+  }
+  SurfaceSearch search;
+  expect_same(search, particles, {});
+  for (int round = 0; round < 40; ++round) {
+    std::vector<std::uint32_t> entries;
+    for (int k = 0; k < 60; ++k) {
+      const std::uint32_t i = any(random);
+      entries.push_back(i);
+      if (particles.home[i] == Home::nowhere) {
+        // It stands still here, so nobody counts it among those that move.
+        particles.home[i] = Home::here;
+        particles.position[i] = {where(random), where(random), high(random)};
+      } else {
+        particles.home[i] = Home::nowhere;
+      }
+    }
+    search.moves(entries);
+    expect_same(search, particles, {});
+  }
+}
+
 TEST(Surface, WhatIsLostCastsNoShadow) {
   std::mt19937 random(5);
   Particles particles = block(random);
