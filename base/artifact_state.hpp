@@ -2,6 +2,7 @@
 // What a writer of artifacts does with HDF5; only artifact.cpp includes this.
 #pragma once
 
+#include <csignal>
 #include <functional>
 #include <numeric>
 #include <span>
@@ -20,7 +21,11 @@ struct ArtifactWriter::State {
   Handle file{H5I_INVALID_HID, &H5Fclose};
   Handle link_options{H5Pcreate(H5P_LINK_CREATE), &H5Pclose};
 
-  explicit State(const std::filesystem::path& path) : place(path) {}
+  explicit State(const std::filesystem::path& path) : place(path) {
+    // Where files may only grow so far (ulimit -f) a sentence says so, as of a full disk; the
+    // signal would end the program without one.
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
 
   /// @param name of a data set; empty: the file as a whole.
   [[noreturn]] void fail(const std::string& name = "") {

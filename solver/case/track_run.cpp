@@ -79,6 +79,7 @@ class TrackRun {
     const Diffusivity diffusivity = read_diffusivity(t_.diffusivity_laws, t_.diffusivity_law);
     const Model model = make_model(t_, made_.domain);
     if (options_.restart) {
+      made_.particles = {};  // a checkpoint holds them
       if (auto found = checkpoints_.newest(provenance_)) {
         run_ = std::move(found->run);
         engine_.emplace(std::move(found->engine), mixture_, diffusivity, model, ranks_);
@@ -89,6 +90,7 @@ class TrackRun {
       } else {
         spdlog::info("{}: no checkpoint in {}, so from the beginning", options_.name,
                      checkpoints_.folder().string());
+        made_ = discretise(t_, mixture_);
       }
     }
     if (!restarted_) {
@@ -132,16 +134,18 @@ class TrackRun {
     return goes_on;
   }
 
+  std::string last_good() const {
+    return checkpoints_.last().empty()
+               ? "no checkpoint had been written (see --checkpoint-every)"
+               : "the last good checkpoint is " + checkpoints_.last().string();
+  }
+
   double step(double until) {
     double dt = 0;
     try {
       dt = engine_->step(until);
     } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(
-          fmt::format("{}; {}", problem.what(),
-                      checkpoints_.last().empty()
-                          ? "no checkpoint had been written (see --checkpoint-every)"
-                          : "the last good checkpoint is " + checkpoints_.last().string()));
+      throw std::runtime_error(fmt::format("{}; {}", problem.what(), last_good()));
     }
     const LaserBudget& beam = engine_->beam();
     if (engine_->time() <= t_.exposure) {
@@ -193,17 +197,16 @@ class TrackRun {
 
   /// Writes something; should that fail, says what there is to go on from.
   template <class Write>
-  void keep(const Write& write) const {
+  void keep(const Write& write) {
+    const double begun = seconds();
     try {
       write();
+      writing_ += seconds() - begun;
     } catch (const InputError&) {
       throw;  // nothing that room would cure
     } catch (const std::runtime_error& problem) {
       throw std::runtime_error(
-          fmt::format("{}; {}; make room and use --restart", problem.what(),
-                      checkpoints_.last().empty()
-                          ? "there is no earlier checkpoint"
-                          : "the checkpoint before it stands, " + checkpoints_.last().string()));
+          fmt::format("{}; {}; make room and use --restart", problem.what(), last_good()));
     }
   }
 
@@ -245,8 +248,8 @@ class TrackRun {
   }
 
   nlohmann::json finish() {
-    spdlog::info("{} thermal and {} flow steps, {} list builds", engine_->steps(),
-                 engine_->flow_steps(), engine_->list_builds());
+    spdlog::info("{} thermal and {} flow steps, {} list builds; {:.1f} s for files",
+                 engine_->steps(), engine_->flow_steps(), engine_->list_builds(), writing_);
     // The last snapshot is the solidified track.
     take_snapshot();
     const Whole whole(*engine_);
@@ -289,6 +292,7 @@ class TrackRun {
   RunProgress run_;
   bool restarted_ = false;
   double earlier_ = 0;  // s, of the parts of the run before this one
+  double writing_ = 0;  // s, of this one, for snapshots and checkpoints
   std::chrono::steady_clock::time_point begun_, written_;
 };
 

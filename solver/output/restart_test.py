@@ -145,7 +145,7 @@ class Restart(unittest.TestCase):
         done = run_case(folder, "--restart", "--checkpoint-steps", 20, preexec_fn=small_files)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("cannot be written", done.stderr)
-        self.assertIn("the checkpoint before it stands", done.stderr)
+        self.assertIn("the last good checkpoint is " + str(before[-1]), done.stderr)
         self.assertEqual(self.checkpoints(folder), before)
         self.assertEqual(run_case(folder, "--restart").returncode, 0)
         self.assert_same(folder)

@@ -36,7 +36,7 @@ void agree(const Ranks& ranks, const Work& work) {
   }
   if (!ranks.root()) {
     // All are about to say the same; where that ends the program, the root has done so by then.
-    std::this_thread::sleep_for(std::chrono::seconds(1));
+    std::this_thread::sleep_for(std::chrono::seconds(5));
   }
   throw std::runtime_error(problem.substr(1));
 }

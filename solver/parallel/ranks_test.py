@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Any number of ranks and threads, and a restart on another number of ranks, end in the same bytes."""
 
+import os
+import resource
 import signal
 import subprocess
 import sys
@@ -9,8 +11,10 @@ import time
 import unittest
 from pathlib import Path
 
+import h5py
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "output"))
-from same_bytes import assert_same, command, environment, launcher, run_case  # noqa: E402
+from same_bytes import BIN, assert_same, command, environment, fields, launcher, run_case  # noqa: E402
 
 
 class AnyNumberOfRanks(unittest.TestCase):
@@ -93,6 +97,65 @@ class AnyNumberOfRanks(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("goes on from", done.stderr)
         assert_same(self, self.whole, folder)
+
+    def test_a_full_disk_stops_all_ranks_with_one_sentence_and_keeps_the_checkpoint_before(self):
+        folder = self.root / "full"
+        run = subprocess.Popen(launcher(3) + command(folder, "--checkpoint-steps", 20, "--threads", 1),
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment(3))
+        while not (before := sorted((folder / "checkpoints").glob("checkpoint_*.h5"))) and run.poll() is None:
+            time.sleep(0.002)
+        # No file may grow to what a checkpoint needs any more: its room is refused as on a full disk.
+        limit = before[-1].stat().st_size - 4096
+        for rank in Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split():
+            resource.prlimit(int(rank), resource.RLIMIT_FSIZE, (limit, limit))
+        _, said = run.communicate(timeout=100)
+        self.assertEqual(run.returncode, 1, said)
+        self.assertEqual(said.count("cannot be written (is the disk full?)"), 1, said)
+        kept = sorted((folder / "checkpoints").glob("*checkpoint_*.h5"))
+        self.assertIn(f"the last good checkpoint is {kept[-1]}", said)
+        self.assertTrue(kept[-1].name.startswith("checkpoint_"), kept)
+        done = run_case(folder, "--restart", "--threads", 1, ranks=2)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from", done.stderr)
+        assert_same(self, self.whole, folder)
+
+    def test_a_checkpoint_damaged_in_the_part_of_one_rank_is_passed_over_by_all(self):
+        folder = self.root / "damaged"
+        self.stop(folder, 2)
+        found = sorted((folder / "checkpoints").glob("checkpoint_*.h5"))
+        with h5py.File(found[-1], "r+") as file:
+            file["flow/pressure"][-1] += 1  # of the last rank: identities are rows
+        done = run_case(folder, "--restart", "--threads", 1, ranks=3, timeout=100)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("flow/pressure does not have the checksum", done.stderr)
+        self.assertIn("goes on from " + str(found[0]), done.stderr)
+        assert_same(self, self.whole, folder)
+
+    def test_the_number_of_ranks_does_not_show_in_a_checkpoint(self):
+        """But for its provenance and the clocks among its numbers: fields and their checksums."""
+        contents = []
+        for ranks in (0, 2, 4):
+            folder, kept = self.root / f"written_by_{ranks}", self.root / f"{ranks}.h5"
+            place = folder / "checkpoints" / "checkpoint_000000000040.h5"
+            run = subprocess.Popen(launcher(ranks) + command(folder, "--checkpoint-steps", 40, "--threads", 1),
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment(ranks))
+            while not place.exists() and run.poll() is None:
+                time.sleep(0.002)
+            os.link(place, kept)  # the run keeps the last two and removes all in the end
+            self.assertEqual(run.wait(timeout=120), 0)
+            contents.append(fields(kept))
+        for one in contents[1:]:
+            self.assertEqual(one.keys(), contents[0].keys())
+            for name in set(one) - {"numbers"}:
+                self.assertEqual(one[name], contents[0][name], name)
+
+    def test_no_program_loads_two_hdf5_libraries(self):
+        for program in sorted(BIN.iterdir()):
+            libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
+            kinds = {name for name in ("libhdf5_serial.so", "libhdf5_openmpi.so") if name in libraries}
+            self.assertLess(len(kinds), 2, program)
+            if program.name in ("meltproof-solve", "meltproof-powder", "meltproof-export", "meltproof-verify"):
+                self.assertEqual(kinds, {"libhdf5_openmpi.so"}, program)
 
     def test_what_cannot_be_shared_is_refused_in_a_sentence(self):
         for setting, said in (("flow.surroundings=gas", 'flow.surroundings = "gas"'),
