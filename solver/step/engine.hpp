@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "base/material.hpp"
@@ -251,7 +252,9 @@ class Engine {
   std::size_t flow_count_ = 0, list_builds_ = 0, builds_since_sort_ = 0, lost_ = 0;
   StepTimes times_, times_at_balance_;
   std::vector<std::uint32_t> free_;  // entries without a particle
-  bool slots_added_ = false;         // since the last rebuild
+  std::size_t settled_ = 0;          // entries before this one are in the order of sums
+  std::unordered_map<std::int64_t, std::uint32_t> vacated_;  // of those, whose particle left, by it
+  bool slots_added_ = false;                                 // since the last rebuild
   // Of the division among ranks; by clocks, so nothing that is computed depends on it.
   double imbalance_ = 1, imbalance_after_division_ = 1, waited_at_balance_ = 0;
   std::array<double, 3> costs_{};  // s, see unit_costs()

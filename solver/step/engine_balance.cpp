@@ -129,6 +129,8 @@ void Engine::divide_anew(bool sort) {
     flow_->set_particle(i, own[i].flow);
   }
   note_peers(particles_.position);
+  settled_ = particles_.size();
+  vacated_.clear();
   add_free_slots();
   for (auto* members : {&heat_active_, &liquid_}) {
     members->clear();

@@ -50,12 +50,18 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     left.emplace(particles_.identity[i], i);
     moved.entries.push_back(i);
   }
-  const auto settle = [&](const Traveller& t, Home home) {
-    const auto known = left.find(t.identity);
-    const std::uint32_t i = known != left.end() ? known->second : free_slot();
-    if (known != left.end()) {
-      left.erase(known);
+  const auto entry = [&](std::int64_t identity) {
+    for (auto* known : {&left, &vacated_}) {
+      if (const auto found = known->find(identity); found != known->end()) {
+        const std::uint32_t i = found->second;
+        known->erase(found);
+        return i;
+      }
     }
+    return free_slot();
+  };
+  const auto settle = [&](const Traveller& t, Home home) {
+    const std::uint32_t i = entry(t.identity);
     unpack(i, t, home);
     flow_->set_particle(i, t.flow);
     moved.entries.push_back(i);
@@ -80,7 +86,14 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     peers[static_cast<std::size_t>(t.rank)].receive.push_back(settle(t, Home::elsewhere));
   }
   for (const std::uint32_t i : moved.entries) {
-    if (particles_.home[i] == Home::nowhere) {
+    if (particles_.home[i] != Home::nowhere) {
+      continue;
+    }
+    // An entry among those that were last put in order waits for its own particle: another one
+    // there would have all lists behind it sorted by more than their indices.
+    if (i < settled_) {
+      vacated_.emplace(particles_.identity[i], i);
+    } else {
       free_.push_back(i);
     }
   }

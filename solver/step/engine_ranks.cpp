@@ -87,6 +87,7 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   select_if_there(mobile_, kept);
   select_if_there(fast_, kept);
   select_if_there(slow_power_, kept);
+  settled_ = particles_.size();
   add_free_slots();
   note_peers(places);
   return kept;
