@@ -10,7 +10,7 @@ IN_TURNS := --benchmark_repetitions=9 --benchmark_enable_random_interleaving=tru
 # 200 000 particles of the same track, early: its pool takes minutes to develop on one core. Runs on more ranks
 # than cores only tell what ranks say to each other.
 BENCH_RANKS := solver/cases/track_0wt.toml --set powder.surface=bare --set spacing='6.5 um' --until '100 us' \
-  --window '2 us'
+  --window '6 us'
 MPIRUN := mpirun --allow-run-as-root --oversubscribe --bind-to none
 ONE_CORE := OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive
 
@@ -24,7 +24,7 @@ bench: packages
 	@for n in 2 4 8; do \
 	  $(STAGE) "$$n ranks, a minute" env $(ONE_CORE) OMPI_MCA_btl_vader_single_copy_mechanism=none \
 	    OMPI_MCA_mpi_yield_when_idle=$$(( n > 2 )) $(MPIRUN) -n $$n $(BIN)/meltproof-bench $(BENCH_RANKS) \
-	    --repeats $$(( n > 2 ? 1 : 5 )) --output $(BENCH_WORK)/ranks_$$n.json; \
+	    --repeats $$(( n > 2 ? 1 : 9 )) --output $(BENCH_WORK)/ranks_$$n.json; \
 	done
 	@$(STAGE) 'pair loop, half a minute' bash -c \
 	  '$(ONE_CORE) $(BIN)/meltproof-bench-pairs $(IN_TURNS) > $(BENCH_WORK)/pairs.json'
