@@ -60,23 +60,15 @@ TEST(NearList, AStirredDropOnAWallHasTheColourGradientOfAllItsNeighbours) {
     engine.step(begun + 1e-4);
   }
   // Places and densities as the last call of the passes saw them.
-  engine.set_state(
-      [&] {
-        std::vector<Vector> velocity(engine.particles().size());
-        for (std::size_t i = 0; i < velocity.size(); ++i) {
-          velocity[static_cast<std::size_t>(engine.particles().identity[i])] =
-              engine.particles().velocity[i];
-        }
-        return velocity;
-      }(),
-      [&] {
-        std::vector<double> density(engine.particles().size());
-        for (std::size_t i = 0; i < density.size(); ++i) {
-          density[static_cast<std::size_t>(engine.particles().identity[i])] =
-              engine.particles().density[i];
-        }
-        return density;
-      }());
+  const Particles& p = engine.particles();
+  std::vector<Vector> velocity(p.size());
+  std::vector<double> density(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto id = static_cast<std::size_t>(p.identity[i]);
+    velocity[id] = p.velocity[i];
+    density[id] = p.density[i];
+  }
+  engine.set_state(velocity, density);
   ASSERT_GT(engine.flow().liquid().size(), 100U);
   for (const std::uint32_t i : engine.flow().liquid()) {
     const Vector found = engine.flow().particle(i).colour, exact = colour_gradient(engine, i);

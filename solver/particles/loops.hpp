@@ -10,26 +10,27 @@
 
 namespace meltproof::solver {
 
-/// Runs body(i) for i < n on all threads; small loops stay on one, where starting threads costs
-/// more.
+/// Runs body(i) for i < n on all threads, `chunk` at a time; up to `few` of them stay on one
+/// thread, because starting threads takes a few microseconds.
 template <class Body>
-void for_each_particle(std::size_t n, const Body& body) {
+void for_each_in_chunks(std::size_t n, int chunk, std::int64_t few, const Body& body) {
   const auto count = static_cast<std::int64_t>(n);
-#pragma omp parallel for schedule(dynamic, 256) if (count > 2000)
+#pragma omp parallel for schedule(dynamic, chunk) if (count > few)
   for (std::int64_t i = 0; i < count; ++i) {
     body(static_cast<std::size_t>(i));
   }
 }
 
-/// The same for bodies that take a fraction of a microsecond, as sums over neighbours do: already
-/// some dozens are worth sharing, where starting threads takes a few microseconds.
+/// The same for bodies of some nanoseconds.
+template <class Body>
+void for_each_particle(std::size_t n, const Body& body) {
+  for_each_in_chunks(n, 256, 2000, body);
+}
+
+/// The same for bodies that take a fraction of a microsecond, as sums over neighbours do.
 template <class Body>
 void for_each_sum(std::size_t n, const Body& body) {
-  const auto count = static_cast<std::int64_t>(n);
-#pragma omp parallel for schedule(dynamic, 16) if (count > 64)
-  for (std::int64_t i = 0; i < count; ++i) {
-    body(static_cast<std::size_t>(i));
-  }
+  for_each_in_chunks(n, 16, 64, body);
 }
 
 /// The largest value(i) for i < n, or `least` if n is zero, on all threads.
