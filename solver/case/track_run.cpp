@@ -134,18 +134,12 @@ class TrackRun {
     return goes_on;
   }
 
-  std::string last_good() const {
-    return checkpoints_.last().empty()
-               ? "no checkpoint had been written (see --checkpoint-every)"
-               : "the last good checkpoint is " + checkpoints_.last().string();
-  }
-
   double step(double until) {
     double dt = 0;
     try {
       dt = engine_->step(until);
     } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(fmt::format("{}; {}", problem.what(), last_good()));
+      throw std::runtime_error(fmt::format("{}; {}", problem.what(), checkpoints_.last_good()));
     }
     const LaserBudget& beam = engine_->beam();
     if (engine_->time() <= t_.exposure) {
@@ -205,8 +199,8 @@ class TrackRun {
     } catch (const InputError&) {
       throw;  // nothing that room would cure
     } catch (const std::runtime_error& problem) {
-      throw std::runtime_error(
-          fmt::format("{}; {}; make room and use --restart", problem.what(), last_good()));
+      throw std::runtime_error(fmt::format("{}; {}; make room and use --restart", problem.what(),
+                                           checkpoints_.last_good()));
     }
   }
 

@@ -115,6 +115,11 @@ void CheckpointFolder::copy_snapshots(ArtifactWriter* run_file, std::size_t coun
   });
 }
 
+std::string CheckpointFolder::last_good() const {
+  return last_.empty() ? "no checkpoint had been written (see --checkpoint-every)"
+                       : "the last good checkpoint is " + last_.string();
+}
+
 void CheckpointFolder::clear() const {
   on_root(ranks_, [&] {
     std::error_code ignored;

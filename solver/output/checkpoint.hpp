@@ -64,8 +64,8 @@ class CheckpointFolder {
   /// The run is complete, or begins anew: removes what this class wrote, and nothing else.
   void clear() const;
 
-  /// The last checkpoint written or read, or "".
-  const std::filesystem::path& last() const { return last_; }
+  /// "the last good checkpoint is <that written or read last>", or that there is none.
+  std::string last_good() const;
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
