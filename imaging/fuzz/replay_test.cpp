@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every file of the corpus, and every file that once brought a reader down, through every reader.
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "imaging/fuzz/read_everything.hpp"
 
@@ -23,6 +23,19 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
+/// s that the processor spent on this program and on the child processes that it has waited for. A
+/// clock on the wall would also count what a busy machine lets a program wait.
+double processor_time() {
+  double sum = 0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    ::getrusage(who, &used);
+    for (const auto& t : {used.ru_utime, used.ru_stime})
+      sum += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  }
+  return sum;
+}
+
 TEST(Replay, EverySeedIsReadByItsReader) {
   for (const auto& reader : reader_names()) {
     const auto seeds = files_below(fs::path("imaging/fuzz/seeds") / reader);
@@ -37,10 +50,9 @@ TEST(Replay, NoFileBringsAReaderDown) {
     for (const auto& file : files_below(folder)) {
       ++files;
       for (const auto& reader : reader_names()) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = processor_time();
         EXPECT_NO_THROW(read_everything(reader, file)) << reader << " " << file;
-        const auto taken = std::chrono::steady_clock::now() - start;
-        EXPECT_LT(taken, std::chrono::seconds(5)) << reader << " " << file;
+        EXPECT_LT(processor_time() - start, 5) << reader << " " << file;
       }
     }
   EXPECT_GE(files, reader_names().size());

@@ -13,6 +13,7 @@
 #include "imaging/recording/bytes.hpp"
 #include "imaging/recording/csv_blocks.hpp"
 #include "imaging/recording/csv_commas.hpp"
+#include "imaging/recording/csv_numbers.hpp"
 #include "imaging/recording/csv_row.hpp"
 #include "imaging/recording/signal_unit.hpp"
 
@@ -123,6 +124,52 @@ std::vector<Place> frames_of(const ByteFile& file, const std::vector<CsvBlock>& 
   return frames;
 }
 
+/// The rows of every frame, as they stand in the file.
+struct Rows {
+  ByteFile file;
+  CsvDialect dialect;
+  std::vector<Place> frames;
+  std::size_t width = 0, height = 0;
+
+  void read(std::size_t index, std::vector<float>& into) const {
+    LineReader reader(file, frames[index].place);
+    std::string_view line;
+    std::vector<float> values;
+    into.resize(width * height);
+    for (std::size_t row = 0; row < frames[index].first; ++row) reader.next(line);
+    for (std::size_t row = 0; row < height; ++row) {
+      if (!reader.next(line) || !parse_csv_row(line, dialect, values) || values.size() != width)
+        throw InputError(fmt::format(
+            "{}: row {} of frame {} is no row of {} numbers any more; the file was changed "
+            "while it was read.",
+            file.path().string(), row, index, width));
+      std::copy(values.begin(), values.end(),
+                into.begin() + static_cast<std::ptrdiff_t>(row * width));
+    }
+  }
+};
+
+/// The numbers of rows and columns that the first frame and the last bring along; the header then
+/// has the size that is left.
+CsvNumbers find_numbers(const Rows& rows, RecordingHeader& header) {
+  if (rows.frames.empty()) return {};
+  check_frame_size(header);
+  std::vector<float> values;
+  rows.read(0, values);
+  const CsvNumbers numbers = csv_numbers(values, rows.width, rows.height);
+  if (!numbers.row && !numbers.column) return {};
+  rows.read(rows.frames.size() - 1, values);
+  if (csv_numbers(values, rows.width, rows.height) != numbers) return {};
+  header.height -= numbers.row ? 1 : 0;
+  header.width -= numbers.column ? 1 : 0;
+  header.notes.push_back(
+      fmt::format("The first {} of every frame counts 0, 1, 2, ... and was left out.",
+                  numbers.row && numbers.column ? "row and the first column"
+                  : numbers.row                 ? "row"
+                                                : "column"));
+  return numbers;
+}
+
 }  // namespace
 
 bool is_csv(std::string_view first_bytes) {
@@ -152,24 +199,14 @@ Recording open_csv(const std::filesystem::path& path, const ReadOptions& options
   header.frames = frames.size();
   header.notes.push_back("A text holds no times: frame rate and integration time are unknown.");
   const SignalScale scale = describe_signal(csv_unit(preamble), options.unit, header);
-  return {
-      header, [file, frames, dialect, scale, width = header.width, height = header.height](
-                  std::size_t index, Frame& frame) {
-        LineReader reader(file, frames[index].place);
-        std::string_view line;
-        std::vector<float> values;
-        for (std::size_t row = 0; row < frames[index].first; ++row) reader.next(line);
-        for (std::size_t row = 0; row < height; ++row) {
-          if (!reader.next(line) || !parse_csv_row(line, dialect, values) || values.size() != width)
-            throw InputError(fmt::format(
-                "{}: row {} of frame {} is no row of {} numbers any more; the file was changed "
-                "while it was read.",
-                file.path().string(), row, index, width));
-          std::copy(values.begin(), values.end(),
-                    frame.values.begin() + static_cast<std::ptrdiff_t>(row * width));
-        }
-        scale.apply(frame.values);
-      }};
+  const Rows rows{file, dialect, frames, header.width, header.height};
+  const CsvNumbers numbers = find_numbers(rows, header);
+  return {header, [rows, scale, numbers](std::size_t index, Frame& frame) {
+            std::vector<float> values;
+            rows.read(index, values);
+            without_numbers(values, rows.width, numbers, frame.values);
+            scale.apply(frame.values);
+          }};
 }
 
 }  // namespace meltproof::imaging

@@ -223,6 +223,36 @@ TEST(Csv, ReadsTextOfSixteenBitCharacters) {
   }
 }
 
+TEST(Csv, LeavesOutTheNumbersOfRowsAndColumns) {
+  const TestFolder folder;
+  const auto picture = synthetic::scene(6, 5, 0);
+  const auto table = [&](bool row, bool column, int first, const std::string& corner) {
+    std::string text;
+    for (std::size_t y = row ? 0 : 1; y <= 5; ++y) {
+      if (column) text += (y == 0 ? corner : std::to_string(static_cast<int>(y) - 1 + first)) + ",";
+      for (std::size_t x = 0; x < 6; ++x)
+        text += (y == 0 ? std::to_string(static_cast<int>(x) + first)
+                        : std::to_string(picture.counts[(y - 1) * 6 + x]) + ".5") +
+                (x == 5 ? "\n" : ",");
+    }
+    return text;
+  };
+  std::vector<float> expected;
+  for (const auto count : picture.counts) expected.push_back(static_cast<float>(count) + 0.5F);
+  for (const std::string& text :
+       {table(true, true, 0, ""), table(true, true, 1, "0"), table(true, true, 0, "NaN"),
+        table(true, false, 0, ""), table(false, true, 1, ""), table(false, false, 0, ""),
+        table(true, true, 0, "") + "\n" + table(true, true, 0, "")}) {
+    const auto recording = open_csv(folder.file("a.csv", text));
+    ASSERT_EQ(recording.header().width, 6u) << text;
+    ASSERT_EQ(recording.header().height, 5u) << text;
+    EXPECT_EQ(recording.frame(recording.header().frames - 1).values, expected) << text;
+  }
+  // A ramp is a picture.
+  EXPECT_EQ(open_csv(folder.file("b.csv", "0,1,2,3,4.0\n1,2,3,4,5.0\n")).header().height, 2u);
+  EXPECT_EQ(open_csv(folder.file("c.csv", "0,1,2,3,4.0\n0,1,2,3,4.0\n")).header().height, 2u);
+}
+
 TEST(Folder, ReadsFilesInTheOrderOfTheirNumbers) {
   const TestFolder folder;
   for (const std::size_t i : {10u, 2u, 1u})
