@@ -124,6 +124,7 @@ TEST(TwoHundredScenes, WithTheReferenceSignalFound) {
     MeasurementRequest r = request_for(s);
     r.search = ReferenceSearch::required;
     r.budget.u_point_spread = calibrated;
+    r.rules.uncertainty = 0.02;  // what is asked: a length to 2 %, or the sentence why not
     const Measurement m = measure_recording(recording_of(film, s), r);
     if (m.budget && m.reference_used)
       tally.add(m, film);

@@ -10,10 +10,6 @@ namespace {
 
 using Image = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Highest power of y. In a side view only y^2 and y^4 are used, since the pool is the upper half's
-/// mirror image below the plate's surface.
-bool has_term(const Patch& patch, int power_of_y) { return !patch.even || power_of_y % 2 == 0; }
-
 /// The blur from the model's grid to the samples along one axis, samples in columns, and its change
 /// with its variance.
 struct Kernel {
@@ -61,6 +57,15 @@ Field field_at(const Patch& patch, const Vector& p, double x, double y) {
   return f;
 }
 
+Vector terms_at(const Patch& patch, double x, double y) {
+  Vector by = Vector::Zero();
+  for (int k = 0; k < terms; ++k) {
+    const int power = k % (across_order + 1);
+    if (has_term(patch, power)) by(k) = std::pow(x, k / (across_order + 1)) * std::pow(y, power);
+  }
+  return by;
+}
+
 TailLaw law_of(const Patch& patch, const Vector& p) {
   return {p(theta_star), p(ratio), p(interval), patch.steepness};
 }
@@ -76,7 +81,7 @@ Linearised linearise(const Patch& patch, const Vector& p, bool derivatives) {
   const TailLaw law = law_of(patch, p);
   const double dx = 1 / (Stack::samples * patch.scale), dy = 1 / (fine * patch.scale);
   Image signal(h, w);
-  std::array<Image, 4> by;  // theta, theta*, ratio, interval
+  std::array<Image, 5> by;  // theta, theta*, ratio, interval, cap
   if (derivatives)
     for (auto& m : by) m.resize(h, w);
   for (int r = 0; r < h; ++r) {
@@ -85,13 +90,16 @@ Linearised linearise(const Patch& patch, const Vector& p, bool derivatives) {
       const Field f = field_at(patch, p, patch.x(c), y);
       const double cell = std::hypot(f.by_x * dx, f.by_y * dy);
       const TailLawValue v = tail_law(law, f.theta, cell);
-      const double s = metal * std::exp(std::min(v.log_signal, patch.highest));
+      const bool capped = v.log_signal > p(cap);
+      const double s = metal * std::exp(std::min(v.log_signal, p(cap)));
       signal(r, c) = s;
       if (!derivatives) continue;
-      by[0](r, c) = s * v.by_theta;
-      by[1](r, c) = s * v.by_theta_star;
-      by[2](r, c) = s * v.by_ratio;
-      by[3](r, c) = s * v.by_interval;
+      by[4](r, c) = capped ? s : 0;
+      const double below = capped ? 0 : s;
+      by[0](r, c) = below * v.by_theta;
+      by[1](r, c) = below * v.by_theta_star;
+      by[2](r, c) = below * v.by_ratio;
+      by[3](r, c) = below * v.by_interval;
     }
   }
   std::vector<int> columns, rows;
@@ -109,7 +117,8 @@ Linearised linearise(const Patch& patch, const Vector& p, bool derivatives) {
   result.blurred.assign(model.data(), model.data() + model.size());
   const auto lines = static_cast<std::size_t>(patch.lines);
   result.chi_squared.assign(lines, 0);
-  if (patch.u_variance > 0) result.prior = std::pow(p(variance) / patch.u_variance, 2);
+  const Vector off = p - patch.prior.mean;
+  result.prior = off.dot(patch.prior.weight.cwiseProduct(off));
   const auto samples = static_cast<std::size_t>(patch.lines * patch.columns);
   for (std::size_t i = 0; i < samples; ++i)
     result.chi_squared[i / static_cast<std::size_t>(patch.columns)] +=
@@ -134,6 +143,7 @@ Linearised linearise(const Patch& patch, const Vector& p, bool derivatives) {
   derivative[theta_star] = blurred(by[1]);
   derivative[ratio] = blurred(by[2]);
   derivative[interval] = blurred(by[3]);
+  derivative[cap] = blurred(by[4]);
   derivative[variance] = (across.by_variance.transpose() * signal) * along.weight +
                          (across.weight.transpose() * signal) * along.by_variance;
   result.normal.assign(lines, Matrix::Zero());
@@ -166,69 +176,10 @@ double blurred_log_signal(const Patch& patch, const Vector& p, double x, double 
       const Field f = field_at(patch, p, x + i * u / patch.scale, patch.y(stack_line + k * t));
       const double g = std::exp(-0.5 * (i * i * u * u / v(0) + k * k * t * t / v(1)));
       const double cell = std::hypot(f.by_x * u, f.by_y * t) / patch.scale;
-      sum += g * std::exp(std::min(tail_law(law, f.theta, cell).log_signal, patch.highest));
+      sum += g * std::exp(std::min(tail_law(law, f.theta, cell).log_signal, p(cap)));
       weight += g;
     }
   return std::log(sum / weight);
-}
-
-Vector bounded(const Patch& patch, Vector p, const Freedom& free) {
-  if (free.ratio) p(ratio) = std::clamp(p(ratio), -0.5, 2.0);
-  if (free.interval) p(interval) = std::clamp(p(interval), narrowest, widest);
-  const double least = std::pow(std::min(patch.blur.along, patch.blur.across), 2);
-  p(variance) = std::clamp(p(variance), -0.7 * least, 2 * least);
-  return p;
-}
-
-Vector solve(const Patch& patch, Matrix normal, Vector gradient, const Vector& p, double damping,
-             const Freedom& free, double variance_prior) {
-  normal = Matrix(normal.selfadjointView<Eigen::Lower>());
-  const auto fix = [&](int k) {
-    normal.row(k).setZero();
-    normal.col(k).setZero();
-    normal(k, k) = 1;
-    gradient(k) = 0;
-  };
-  if (!free.theta_star) fix(theta_star);
-  if (!free.ratio) fix(ratio);
-  if (!free.interval) fix(interval);
-  if (!free.variance || !(patch.u_variance > 0)) {
-    fix(variance);
-  } else {
-    const double weight = 1 / (patch.u_variance * patch.u_variance);
-    normal(variance, variance) += weight;
-    gradient(variance) += weight * (variance_prior - p(variance));
-  }
-  for (int k = 0; k < terms; ++k)
-    if (!has_term(patch, k % (across_order + 1))) fix(k);
-  const double trace = normal.diagonal().maxCoeff();
-  for (int k = 0; k < parameters; ++k)
-    normal(k, k) = normal(k, k) * (1 + damping) + 1e-9 * std::max(1e-6 * trace, normal(k, k));
-  return normal.ldlt().solve(gradient);
-}
-
-Vector minimise(const Patch& patch, Vector p, const Freedom& free, int steps) {
-  double damping = 1e-2;
-  p = bounded(patch, p, free);
-  Linearised at = linearise(patch, p, true);
-  double chi = at.total();
-  for (int i = 0; i < steps; ++i) {
-    const Vector step = solve(patch, sum(at.normal), sum(at.gradient), p, damping, free);
-    const Vector next = bounded(patch, p + step, free);
-    const double trial = linearise(patch, next, false).total();
-    if (std::isfinite(trial) && trial < chi) {
-      const bool done = chi - trial < 1e-3 * (1 + 1e-3 * chi);
-      p = next;
-      chi = trial;
-      damping = std::max(damping * 0.2, 1e-9);
-      if (done) break;
-      at = linearise(patch, p, true);
-    } else {
-      damping *= 8;
-      if (damping > 1e6) break;
-    }
-  }
-  return p;
 }
 
 Vector first_guess(const Patch& patch, const TailLaw& law) {
@@ -262,6 +213,7 @@ Vector first_guess(const Patch& patch, const TailLaw& law) {
   p.head<terms>() = normal.ldlt().solve(right);
   p(ratio) = law.ratio;
   p(interval) = law.interval;
+  p(cap) = patch.brightest + 4;
   for (int l = 0; l < patch.lines && !patch.crossing.empty(); ++l)
     p(theta_star) +=
         field_at(patch, p,

@@ -14,24 +14,32 @@ namespace meltproof::imaging::blurred_fit {
 
 inline constexpr int along_order = 4, across_order = 4;  // of the polynomial
 inline constexpr int terms = (along_order + 1) * (across_order + 1);
-inline constexpr int parameters = terms + 4;
+inline constexpr int parameters = terms + 5;
 inline constexpr int theta_star = terms, ratio = terms + 1, interval = terms + 2,
-                     variance = terms + 3;
+                     variance = terms + 3, cap = terms + 4;
 inline constexpr int fine = 3;           // rows of the model a line: the front bends within a pixel
 inline constexpr double edge_reach = 3;  // px, at the leading edge and at the sides
 inline constexpr double reach = 7;       // px along a line on either side of the start, in the tail
-/// Bounds of the interval where heat is released: the latent heat of steels, nickel, titanium and
-/// aluminium alloys amounts to 0.5 and more.
-inline constexpr double narrowest = 0.4, widest = 1.2;
 
 /// Coefficients of the polynomial (powers of y within powers of x), then what TailLaw holds, then
-/// by how much the variance of the blur is larger than that of the patch, px^2.
+/// by how much the variance of the blur is larger than that of the patch, px^2, and ln(S - dark)
+/// that no metal exceeds, since it boils there.
 using Vector = Eigen::Matrix<double, parameters, 1>;
 using Matrix = Eigen::Matrix<double, parameters, parameters>;
 
 /// Which parameters besides the polynomial a fit may change.
 struct Freedom {
-  bool theta_star = false, ratio = false, interval = false, variance = false;
+  bool theta_star = false, ratio = false, interval = false, variance = false, cap = false;
+};
+
+/// What is known of the parameters before a fit: independent normal distributions.
+struct Prior {
+  Vector mean = Vector::Zero();
+  Vector weight = Vector::Zero();  ///< 1 / u^2; 0: nothing is known
+  void know(int parameter, double value, double u) {
+    mean(parameter) = value;
+    weight(parameter) = 1 / (u * u);
+  }
 };
 
 /// The part of the stack that is fitted, and the model's own finer grid around it.
@@ -40,12 +48,14 @@ struct Patch {
   int columns = 0, lines = 0;
   int margin_columns = 0, margin_rows = 0;
   double centre_column = 0, centre_line = 0;
-  bool even = false;      // a side view: the surface is at centre_line
-  double scale = 6;       // px, makes the polynomial's arguments of order one
-  double highest = 0;     // ln S that the polynomial may reach in the margins
-  Blur blur;              // px
-  double u_variance = 0;  // px^2, of the blur
-  double steepness = steepness_of_steel;
+  bool even = false;     // a side view: the surface is at centre_line
+  double scale = 6;      // px, makes the polynomial's arguments of order one
+  double brightest = 0;  // ln S of the brightest place, as it is blurred
+  Blur blur;             // px
+  Prior prior;
+  double narrowest = 0, widest = 0;    // intervals that a shoulder may have
+  double to_beam = 0, half_width = 0;  // px, of the pool from the start: how fast it may change
+  double steepness = steepness_of_steel, u_steepness = 0;
   std::vector<double> value, weight;  // lines * columns; weight 0: not compared
   std::vector<double> smooth;         // the same values over half a pixel: where to begin
   std::vector<int> crossing;          // of every line, column where it falls to the start
@@ -69,8 +79,17 @@ struct Patch {
   }
 };
 
+/// Whether the polynomial has this power of y. In a side view only y^2 and y^4 are used, since the
+/// pool is the upper half's mirror image below the plate's surface.
+inline bool has_term(const Patch& patch, int power_of_y) {
+  return !patch.even || power_of_y % 2 == 0;
+}
+
 /// Which end of the pool is fitted.
 enum class End { tail, leading };
+
+/// The blur with what a stack's columns add by their width.
+Blur with_columns(const Blur& blur);
 
 /// The part of the stack within reach of the place where each line falls to `start` (ln(S - dark)):
 /// seven pixels in the tail, without the hottest part under the beam; three at the leading edge.
@@ -88,6 +107,8 @@ struct Field {
   double theta = 0, by_x = 0, by_y = 0;
 };
 Field field_at(const Patch& patch, const Vector& p, double x, double y);
+/// Change of theta there with every parameter.
+Vector terms_at(const Patch& patch, double x, double y);
 TailLaw law_of(const Patch& patch, const Vector& p);
 
 /// Model, its derivatives, and what of the normal equations each line gives.
@@ -96,7 +117,7 @@ struct Linearised {
   std::vector<Vector> gradient;
   std::vector<double> chi_squared;
   std::vector<double> blurred;  ///< lines * columns, signal above dark of the model
-  double prior = 0;             ///< chi-squared of the blur's variance
+  double prior = 0;             ///< chi-squared of what is known beforehand
   double total() const;
 };
 Linearised linearise(const Patch& patch, const Vector& p, bool derivatives);
@@ -107,10 +128,16 @@ double blurred_log_signal(const Patch& patch, const Vector& p, double x, double 
 /// Parameters within the bounds of the model.
 Vector bounded(const Patch& patch, Vector p, const Freedom& free);
 
-/// One damped step of Gauss and Newton. @param variance_prior where the prior of the blur's
-/// variance is centred.
+/// One damped step of Gauss and Newton.
 Vector solve(const Patch& patch, Matrix normal, Vector gradient, const Vector& p, double damping,
-             const Freedom& free, double variance_prior = 0);
+             const Freedom& free);
+
+/// Covariance of the free parameters at a minimum, to second order; zero for the others.
+Matrix covariance(const Patch& patch, const Linearised& at, const Freedom& free);
+
+/// Change of the free parameters at a minimum for one unit of a parameter that is not free, to
+/// first order.
+Vector response(const Patch& patch, const Linearised& at, const Freedom& free, int parameter);
 
 /// Least squares by Levenberg and Marquardt.
 Vector minimise(const Patch& patch, Vector p, const Freedom& free, int steps);

@@ -17,8 +17,8 @@ int margin(double sigma, int samples) {
 /// @return how many there are.
 std::size_t fill(Patch& patch, const Stack& stack, const std::vector<float>& smooth, double dark,
                  const Blur& blur, const PlateEdge& edge, double start, double least) {
-  patch.highest = start + 4;
   patch.blur = blur;
+  patch.brightest = start;
   patch.margin_columns = margin(blur.along, Stack::samples);
   patch.margin_rows = margin(blur.across, fine);
   for (int row = 0; row < patch.height(); ++row)
@@ -38,6 +38,7 @@ std::size_t fill(Patch& patch, const Stack& stack, const std::vector<float>& smo
       patch.weight.push_back(known ? 1 / u2 : 0);
       patch.smooth.push_back(
           std::max(static_cast<double>(smooth[i]) - dark, 1e-3 * std::exp(start)));
+      patch.brightest = std::max(patch.brightest, std::log(patch.smooth.back()));
       used += known ? 1 : 0;
     }
   return used;
@@ -45,13 +46,18 @@ std::size_t fill(Patch& patch, const Stack& stack, const std::vector<float>& smo
 
 }  // namespace
 
+Blur with_columns(const Blur& blur) {
+  const double column = 1.0 / (12 * Stack::samples * Stack::samples);
+  return {std::sqrt(blur.along * blur.along + column), blur.across};
+}
+
 std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blur,
                                 const PlateEdge& edge, double start, End end) {
   const std::vector<float> smooth = smoothed(stack, 0.5, 0);
   const double level = dark + std::exp(start);
   const auto columns = static_cast<std::ptrdiff_t>(stack.columns);
   std::vector<std::ptrdiff_t> crossing(stack.lines, -1);
-  std::ptrdiff_t lowest = columns, tip = -1, tail = 0;
+  std::ptrdiff_t lowest = columns, tip = -1, tail = 0, beam = 0, crossed = 0;
   for (std::size_t l = 0; l < stack.lines; ++l) {
     if (edge.present && static_cast<double>(l) < edge.row) continue;
     const float* const v = smooth.data() + l * stack.columns;
@@ -60,11 +66,12 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
     std::ptrdiff_t i = peak;
     while (i > 0 && static_cast<double>(v[i - 1]) >= level) --i;
     crossing[l] = i;
+    ++crossed;
     if (i >= lowest) continue;
     lowest = i;
     tip = static_cast<std::ptrdiff_t>(l);
     // The hottest part, under the beam, is no tail: it may be flat, saturated or boiling.
-    tail = peak;
+    tail = beam = peak;
     while (tail > 0 &&
            static_cast<double>(v[tail]) - dark > 0.8 * (static_cast<double>(v[peak]) - dark))
       --tail;
@@ -93,6 +100,8 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
   patch.line = static_cast<std::size_t>(first_line);
   patch.lines = static_cast<int>(last_line - first_line + 1);
   patch.centre_column = static_cast<double>(lowest);
+  patch.to_beam = static_cast<double>(beam - lowest) / Stack::samples;
+  patch.half_width = (edge.present ? 1.0 : 0.5) * static_cast<double>(crossed);
   patch.even = edge.present;
   patch.centre_line = edge.present ? edge.row : static_cast<double>(tip);
   for (std::ptrdiff_t l = first_line; l <= last_line; ++l)

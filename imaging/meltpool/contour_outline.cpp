@@ -80,6 +80,9 @@ double LevelImage::log_level() const {
 
 double LevelImage::log_above_dark(float value, bool inside) const {
   const double above = static_cast<double>(value) - interpolation.dark;
+  // Outside the image, and where a pixel is dead, nothing is known: the floor is for noise only,
+  // and the outline ends half way.
+  if (value == -std::numeric_limits<float>::infinity()) return static_cast<double>(value);
   const double floor = 1e-3 * (static_cast<double>(level) - interpolation.dark);
   return std::log(inside ? above : std::max(above, floor));
 }

@@ -142,6 +142,20 @@ TEST(Contour, IsExactForAPlane) {
   EXPECT_NEAR(r.centroid.y, 4, 1e-6);
 }
 
+// Outside the image nothing is known, so the outline ends at its outer edge however values are
+// interpolated; a floor for noise there would draw it in to a tenth of a pixel.
+TEST(Contour, EndsAtTheOuterEdgeOfTheImageInLogarithmsToo) {
+  const auto image =
+      sample(12, 9, [](double x, double) { return 100 + std::exp(10 - 1.5 * std::abs(x - 5.2)); });
+  RegionFinder finder(12, 9, {.logarithmic = true, .dark = 100});
+  const auto r = finder.largest(image.values, 100 + std::exp(4.75));
+  ASSERT_TRUE(r);
+  EXPECT_NEAR(r->x.low, 5.2 - 3.5, 1e-4);
+  EXPECT_NEAR(r->x.high, 5.2 + 3.5, 1e-4);
+  EXPECT_NEAR(r->y.low, -0.5, 1e-12);
+  EXPECT_NEAR(r->y.high, 8.5, 1e-12);
+}
+
 TEST(Contour, GivesAreaCentroidAndOrientationOfAnEllipse) {
   const double a = 9, b = 4, angle = 0.4, cx = 20.3, cy = 15.8;
   const auto image = sample(42, 32, [&](double x, double y) {

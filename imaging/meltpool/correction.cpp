@@ -12,7 +12,6 @@ namespace {
 
 /// A fit whose chi-squared is larger than this many degrees of freedom is none.
 constexpr double worst_misfit = 12;
-constexpr std::uint64_t seed = 1;
 
 struct Ends {
   SharpEdge leading, tail;
@@ -21,8 +20,8 @@ struct Ends {
 
 std::optional<Ends> fit_ends(const Stack& stack, double dark, const Blur& blur,
                              const PlateEdge& edge, double log_level) {
-  const auto leading = fit_edge(stack, dark, blur, edge, log_level, true, seed);
-  const auto tail = fit_edge(stack, dark, blur, edge, log_level, false, seed);
+  const auto leading = fit_edge(stack, dark, blur, edge, log_level, true);
+  const auto tail = fit_edge(stack, dark, blur, edge, log_level, false);
   if (!leading || !tail || leading->misfit > worst_misfit || tail->misfit > worst_misfit)
     return std::nullopt;
   return Ends{*leading, *tail};
@@ -62,8 +61,8 @@ PlateEdge refined_plate_edge(const Stack& stack, double dark, double level, cons
     const double shift = (i - 2) * apart;
     PlateEdge moved = edge;
     moved.row += shift;
-    const auto leading = fit_edge(stack, dark, blur, moved, std::log(level - dark), true, seed);
-    const auto tail = fit_edge(stack, dark, blur, moved, std::log(level - dark), false, seed);
+    const auto leading = fit_edge(stack, dark, blur, moved, std::log(level - dark), true);
+    const auto tail = fit_edge(stack, dark, blur, moved, std::log(level - dark), false);
     if (!leading || !tail) return edge;
     m.row(i) << 1, shift, shift * shift;
     v(i) = leading->misfit + tail->misfit;
@@ -80,9 +79,15 @@ namespace {
 
 constexpr double d_log = 0.02;
 
-double central(double up, double down, double twice_step) {
-  const double d = (up - down) / twice_step;
-  return std::isfinite(d) ? d : 0;
+/// Change of a number with the plate's border, for one px.
+template <class At>
+double by_row(const PlateEdge& edge, const At& at) {
+  constexpr double step = 0.05;  // px
+  PlateEdge up = edge, down = edge;
+  up.row += step;
+  down.row -= step;
+  const std::optional<double> above = at(up), below = at(down);
+  return above && below ? (*above - *below) / (2 * step) : 0;
 }
 
 /// Both ends at the level.
@@ -94,23 +99,15 @@ bool fit_at_level(CorrectedPool& pool, const Stack& stack, double dark, const Bl
   pool.u_onset = ends->leading.u;
   pool.end = ends->tail.position;
   pool.u_end = ends->tail.u;
-  const auto length_with = [&](const Blur& b, const PlateEdge& e, double l) {
-    const auto there = fit_ends(stack, dark, b, e, l);
-    return there ? there->length() : std::nan("");
-  };
-  constexpr double d_blur = 0.05, d_row = 0.05;
-  pool.by_log_level = central(length_with(blur, edge, log_level + d_log),
-                              length_with(blur, edge, log_level - d_log), 2 * d_log);
-  const auto widened = [&](double d) { return Blur{blur.along + d, blur.across + d}; };
-  pool.by_blur = central(length_with(widened(d_blur), edge, log_level),
-                         length_with(widened(-d_blur), edge, log_level), 2 * d_blur);
-  if (edge.present) {
-    PlateEdge up = edge, down = edge;
-    up.row += d_row;
-    down.row -= d_row;
-    pool.by_plate_edge =
-        central(length_with(blur, up, log_level), length_with(blur, down, log_level), 2 * d_row);
-  }
+  pool.misfit = std::max(1.0, ends->tail.misfit);
+  pool.by_log_level = ends->leading.by_log_level - ends->tail.by_log_level;
+  pool.by_blur = (ends->leading.by_variance - ends->tail.by_variance) * 2 * blur.along;
+  if (edge.present)
+    pool.by_plate_edge = by_row(edge, [&](const PlateEdge& e) -> std::optional<double> {
+      const auto there = fit_ends(stack, dark, blur, e, log_level);
+      if (!there) return std::nullopt;
+      return there->length();
+    });
   return true;
 }
 
@@ -122,60 +119,48 @@ bool fit_with_front(CorrectedPool& pool, const Stack& stack, double dark, const 
   pool.front_found = true;
   pool.end = found.front;
   pool.u_end = found.u_front;
-  const auto onset_with = [&](double log_signal, double variance,
-                              const PlateEdge& e) -> std::optional<SharpEdge> {
-    auto there =
-        fit_edge(stack, dark, with_variance(blur, variance), e, log_signal, true, seed, &m.law);
+  pool.misfit = m.misfit;
+  const Blur told = with_variance(blur, m.variance);
+  const auto onset_at = [&](const PlateEdge& e) -> std::optional<SharpEdge> {
+    auto there = fit_edge(stack, dark, told, e, m.log_signal, true, &m.law);
     if (there && there->misfit > worst_misfit) there.reset();
     return there;
   };
-  const auto onset = onset_with(m.log_signal, m.variance, edge);
+  const auto onset = onset_at(edge);
   if (!onset) return false;
   pool.onset = onset->position;
   pool.u_onset = onset->u;
-  const auto sides_with = [&](double log_signal, double variance) -> std::optional<SharpEdge> {
-    const Blur b = with_variance(blur, variance);
-    const auto high = fit_side(stack, dark, b, edge, log_signal, 1, seed, &m.law);
-    const auto low = fit_side(stack, dark, b, edge, log_signal, -1, seed, &m.law);
-    if (!high || !low || high->misfit > worst_misfit || low->misfit > worst_misfit)
-      return std::nullopt;
-    return SharpEdge{high->position - low->position, std::hypot(high->u, low->u), 0};
-  };
+  pool.by_log_level = onset->by_log_level;
+  pool.by_blur = onset->by_variance * 2 * blur.along;
   // In a side view one of the sides is the plate's border.
-  const auto sides = edge.present ? std::nullopt : sides_with(m.log_signal, m.variance);
-  if (sides) {
+  std::optional<SharpEdge> high, low;
+  if (!edge.present) {
+    high = fit_side(stack, dark, told, edge, m.log_signal, 1, &m.law);
+    low = fit_side(stack, dark, told, edge, m.log_signal, -1, &m.law);
+  }
+  SharpEdge sides;
+  if (high && low && high->misfit <= worst_misfit && low->misfit <= worst_misfit) {
     pool.sides_fitted = true;
-    pool.depth = sides->position;
-    pool.u_sides = sides->u;
+    pool.depth = high->position - low->position;
+    pool.u_sides = std::hypot(high->u, low->u);
+    sides.by_log_level = pool.depth_by_log_level = high->by_log_level - low->by_log_level;
+    sides.by_ratio = high->by_ratio - low->by_ratio;
+    sides.by_interval = high->by_interval - low->by_interval;
+    sides.by_variance = high->by_variance - low->by_variance;
   }
-  constexpr double d_variance = 0.05, d_row = 0.05;
-  const auto slope = [&](const auto& at, double by_log, double by_variance) {
-    const auto up = at(m.log_signal + by_log, m.variance + by_variance);
-    const auto down = at(m.log_signal - by_log, m.variance - by_variance);
-    return up && down ? central(up->position, down->position, 2 * (by_log + by_variance)) : 0;
-  };
-  const auto on_edge = [&](double l, double v) { return onset_with(l, v, edge); };
-  pool.by_log_level = slope(on_edge, d_log, 0);
-  const double by_variance = slope(on_edge, 0, d_variance);
-  pool.by_blur = by_variance * 2 * blur.along;
-  double depth_by_variance = 0;
-  if (sides) {
-    pool.depth_by_log_level = slope(sides_with, d_log, 0);
-    depth_by_variance = slope(sides_with, 0, d_variance);
-  }
-  if (edge.present) {
-    PlateEdge up = edge, down = edge;
-    up.row += d_row;
-    down.row -= d_row;
-    const auto above = onset_with(m.log_signal, m.variance, up);
-    const auto below = onset_with(m.log_signal, m.variance, down);
-    if (above && below) pool.by_plate_edge = central(above->position, below->position, 2 * d_row);
-  }
+  if (edge.present)
+    pool.by_plate_edge = by_row(edge, [&](const PlateEdge& e) -> std::optional<double> {
+      const auto there = onset_at(e);
+      if (!there) return std::nullopt;
+      return there->position;
+    });
   for (const TailDraw& d : m.draws) {
-    const double log_signal = d.log_signal - m.log_signal, variance = d.variance - m.variance;
-    pool.draws.push_back(
-        {pool.by_log_level * log_signal + by_variance * variance - (d.front - m.front),
-         pool.depth_by_log_level * log_signal + depth_by_variance * variance});
+    const auto moved = [&](const SharpEdge& e) {
+      return e.by_log_level * (d.log_signal - m.log_signal) +
+             e.by_variance * (d.variance - m.variance) + e.by_ratio * (d.ratio - m.law.ratio) +
+             e.by_interval * (d.interval - m.law.interval);
+    };
+    pool.draws.push_back({moved(*onset) - (d.front - m.front), moved(sides)});
   }
   return true;
 }

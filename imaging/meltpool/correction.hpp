@@ -24,6 +24,7 @@ struct CorrectedPool {
   double depth_by_log_level = 0;
   double by_blur = 0;         ///< change of the length for one px of the point spread's sigma
   double by_plate_edge = 0;   ///< change of the length for one px of the plate's border
+  double misfit = 1;          ///< of the tail's fit, at least 1
   bool front_found = false;   ///< the end is the front of find_reference_signal()
   double u_sides = 0;         ///< of the depth, where the sides were fitted; else 0
   bool sides_fitted = false;  ///< the depth is between the sides of the blurred model

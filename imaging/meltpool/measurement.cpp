@@ -38,6 +38,33 @@ Level level_of(const ReferenceSignal& found, double dark, double reference_tempe
   return level;
 }
 
+/// d ln S / d ln T of metal: what is taken for it where a recording tells nothing of its band
+/// covers 3 to 5 um from 1300 to 2000 K, and what the radiometry tells is as good as its band's
+/// limits.
+constexpr double u_steepness_assumed = 0.4, u_steepness_of_band = 0.05;
+
+/// The same at the reference temperature, from the recording's radiometry.
+double steepness_of(const Radiometry& r, double reference_temperature) {
+  const double step = 1e-3;  // relative
+  const auto above_dark = [&](double t) { return signal(r, t) - r.dark; };
+  return std::log(above_dark(reference_temperature * (1 + step)) /
+                  above_dark(reference_temperature * (1 - step))) /
+         (2 * step);
+}
+
+/// Why a length by the reference signal is not given, or an empty text.
+std::string too_uncertain(const Measurement& m, const ReferenceRules& rules) {
+  if (!m.budget) return {};
+  const Estimate& length = m.budget->length;
+  const double half = 0.5 * (length.high - length.low) / length.value;
+  if (half <= rules.uncertainty) return {};
+  return fmt::format(
+      "the recording shows a front, but places it only so that the length is uncertain by {:.1f} % "
+      "(95 %), where {:.1f} % are allowed ([reference] uncertainty): more frames, less noise, a "
+      "calibrated point spread or the alloy's freezing_heat would narrow it",
+      100 * half, 100 * rules.uncertainty);
+}
+
 /// A level at a quarter of the recording's own brightness: what registers the frames must scale
 /// with the scene, or the reference signal would not.
 Level registration_level(const Level& level, const Analysis& analysis) {
@@ -66,6 +93,7 @@ ReferenceSearch parse_reference_search(const std::string& text) {
 Measurement measure_recording(const Recording& recording, const MeasurementRequest& request) {
   const auto& h = recording.header();
   Measurement m;
+  Analysis told_level;  // without the reference signal
   Level level = find_level(recording, request.level);
   if (request.dark && !h.radiometry && h.quantity == SignalQuantity::counts)
     level.interpolation = {.logarithmic = true, .dark = *request.dark};
@@ -99,11 +127,13 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
     const double at = *registration_level(level, m.analysis).value;
     const PlateEdge edge = refined_plate_edge(*stack.stack, dark, at, blur,
                                               find_plate_edge(*stack.stack, dark, at, blur));
-    m.reference =
-        find_reference_signal(*stack.stack, dark, blur, edge, request.budget.u_point_spread,
-                              request.rules, request.budget.seed);
     const double temperature =
         request.level.reference_temperature.value_or(default_reference_temperature);
+    m.reference = find_reference_signal(
+        *stack.stack, dark, blur, edge, request.budget.u_point_spread, request.rules,
+        request.budget.seed,
+        h.radiometry ? steepness_of(*h.radiometry, temperature) : steepness_of_steel,
+        h.radiometry ? u_steepness_of_band : u_steepness_assumed);
     if (m.reference.signature != Signature::none && h.radiometry) {
       Radiometry r = *h.radiometry;
       if (request.level.transmission) r.transmission = *request.level.transmission;
@@ -124,20 +154,36 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
     if (m.reference.signature != Signature::none &&
         (!told || request.search == ReferenceSearch::required)) {
       m.reference_used = true;
+      told_level = std::move(m.analysis);
       m.analysis = analyse_at(recording, level_of(m.reference, dark, temperature),
                               request.direction, request.pixel);
     }
   }
+  const auto with_budget = [&] {
+    if (m.analysis.found)
+      m.budget = uncertainty_budget(recording, m.analysis, request.pixel,
+                                    stack.stack ? &*stack.stack : nullptr, stack.reason,
+                                    m.reference_used ? &m.reference : nullptr, request.budget);
+  };
+  with_budget();
+  if (m.reference_used) {
+    const std::string vague = too_uncertain(m, request.rules);
+    if (!vague.empty()) {
+      m.reference.signature = Signature::none;
+      m.reference.reason = vague;
+      m.reference_used = false;
+      m.budget.reset();
+      m.analysis = std::move(told_level);
+      if (request.search != ReferenceSearch::required) with_budget();
+    }
+  }
   if (request.search == ReferenceSearch::required && !m.reference_used) {
     m.analysis.found = false;
+    m.budget.reset();
     m.analysis.reason =
         "The reference signal was not found in the recording: " + m.reference.reason + ".";
     return m;
   }
-  if (m.analysis.found)
-    m.budget = uncertainty_budget(recording, m.analysis, request.pixel,
-                                  stack.stack ? &*stack.stack : nullptr, stack.reason,
-                                  m.reference_used ? &m.reference : nullptr, request.budget);
   return m;
 }
 

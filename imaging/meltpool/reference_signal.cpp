@@ -40,9 +40,10 @@ std::string broken_rule(const TailModel& m, const ReferenceRules& rules) {
         "within the most prominent feature the signal loses {:.0f} % of its slope, "
         "where a front takes at least {:.0f} %",
         100 * m.rise / m.interval, 100 * rules.flattening);
-  if (m.interval >= rules.widest)
+  const double widest = rules.widest * m.law.steepness;
+  if (m.interval >= widest)
     return fmt::format("the most prominent feature is wider than an interval of {:.2f} in ln S",
-                       rules.widest);
+                       widest);
   const double enough = rules.share * static_cast<double>(m.lines);
   if (m.lines_with_front < rules.fewest_lines || static_cast<double>(m.lines_with_front) < enough)
     return fmt::format(
@@ -74,23 +75,27 @@ std::string signature_name(Signature signature) {
 ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blur& blur,
                                       const PlateEdge& edge, double u_point_spread,
                                       const ReferenceRules& rules, std::uint64_t seed,
-                                      double steepness) {
+                                      double steepness, double u_steepness) {
   ReferenceSignal result;
   // The variance of the optics' part of the blur across the scan changes by 2 sigma a px of sigma.
   const double point_spread = std::sqrt(std::max(blur.across * blur.across - 1.0 / 12, 0.0));
-  const TailPriors priors{2 * point_spread * u_point_spread, steepness};
+  TailPriors priors{2 * point_spread * u_point_spread, steepness, u_steepness, {}};
+  if (rules.freezing_heat) {
+    const double interval = steepness * *rules.freezing_heat;
+    priors.interval = {interval, rules.u_freezing_heat * interval};
+  }
   const double top = brightest(stack, dark);
   // A few steps from many signals, then as many as it takes from the most promising ones.
   std::vector<std::pair<double, double>> starts;  // minus what a front explains so far; where
   for (double start = top - 0.3; start > top - 2.8; start -= 0.2)
-    if (const auto m = fit_tail(stack, dark, blur, edge, start, seed, priors, 8))
+    if (const auto m = fit_tail(stack, dark, blur, edge, start, priors, 8))
       if (m->rise >= 0.5 * rules.flattening * m->interval && m->rise > 0.5 * rules.prominence)
         starts.emplace_back(-m->explained / m->misfit, start);
   std::sort(starts.begin(), starts.end());
   starts.resize(std::min<std::size_t>(starts.size(), 4));
   std::optional<TailModel> best;
   const auto try_from = [&](double start) {
-    const auto m = fit_tail(stack, dark, blur, edge, start, seed, priors);
+    const auto m = fit_tail(stack, dark, blur, edge, start, priors);
     if (!m) return;
     const bool good = broken_rule(*m, rules).empty();
     const bool was_good = best && broken_rule(*best, rules).empty();
@@ -104,6 +109,8 @@ ReferenceSignal find_reference_signal(const Stack& stack, double dark, const Blu
     return result;
   }
   try_from(best->blurred);  // around the front itself
+  if (const auto inferred = infer_tail(stack, dark, blur, edge, best->blurred, seed, priors))
+    best = inferred;
   const std::string broken = broken_rule(*best, rules);
   result.model = *best;
   if (!broken.empty()) {
