@@ -97,6 +97,12 @@ Blur with_columns(const Blur& blur);
 std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blur,
                                 const PlateEdge& edge, double start, End end);
 
+/// Makes it known that a tail's field changes over the pool's own size: heat conducted from the
+/// beam makes a field that varies along the scan over the way back to the beam and across it over
+/// the pool's half width (Cauchy's estimate of the coefficients of a power series). What is curved
+/// more is noise.
+void know_smoothness(Patch& tail);
+
 /// The part of the stack within three pixels of where it falls to `start` across the scan, at its
 /// widest. @param side +1 towards higher lines, -1 towards lower ones.
 std::optional<Patch> make_side_patch(const Stack& stack, double dark, const Blur& blur,

@@ -112,6 +112,16 @@ std::optional<Patch> make_patch(const Stack& stack, double dark, const Blur& blu
   return patch;
 }
 
+void know_smoothness(Patch& tail) {
+  for (int k = 0; k < terms; ++k) {
+    const int i = k / (across_order + 1), j = k % (across_order + 1);
+    if (i + j < 2) continue;
+    tail.prior.know(k, 0,
+                    std::pow(tail.scale / std::max(tail.to_beam, 1.0), i) *
+                        std::pow(tail.scale / std::max(tail.half_width, 1.0), j));
+  }
+}
+
 std::optional<Patch> make_side_patch(const Stack& stack, double dark, const Blur& blur,
                                      const PlateEdge& edge, double start, int side) {
   const std::vector<float> smooth = smoothed(stack, 0.5, 0);

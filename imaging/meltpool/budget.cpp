@@ -25,7 +25,7 @@ struct Input {
 /// What the fits leave of a length whose point spread is known, px: analytic pools at random places
 /// of the grid at a signal to noise of 100 come out 0.02 px too long (their source is cut off at
 /// one temperature; a source without that edge leaves less than 0.01).
-constexpr double u_ends = 0.04;
+constexpr double u_ends = 0.055;
 /// The same between leading edge and a step of the emissivity, and of one side.
 constexpr double u_ends_step = 0.02, u_side = 0.06;
 /// Beside a shoulder both ends come out too far in, the front by 0.05 to 0.08 px and the leading

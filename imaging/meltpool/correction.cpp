@@ -101,7 +101,16 @@ bool fit_at_level(CorrectedPool& pool, const Stack& stack, double dark, const Bl
   pool.u_end = ends->tail.u;
   pool.misfit = std::max(1.0, ends->tail.misfit);
   pool.by_log_level = ends->leading.by_log_level - ends->tail.by_log_level;
-  pool.by_blur = (ends->leading.by_variance - ends->tail.by_variance) * 2 * blur.along;
+  // By fits with more and less blur: to first order the ends move too little, since the terms that
+  // the samples hardly tell follow the blur.
+  constexpr double d_blur = 0.05;  // px
+  const auto length_with = [&](double d) -> std::optional<double> {
+    const auto there = fit_ends(stack, dark, {blur.along + d, blur.across + d}, edge, log_level);
+    if (!there) return std::nullopt;
+    return there->length();
+  };
+  const auto longer = length_with(-d_blur), shorter = length_with(d_blur);
+  if (longer && shorter) pool.by_blur = (*shorter - *longer) / (2 * d_blur);
   if (edge.present)
     pool.by_plate_edge = by_row(edge, [&](const PlateEdge& e) -> std::optional<double> {
       const auto there = fit_ends(stack, dark, blur, e, log_level);

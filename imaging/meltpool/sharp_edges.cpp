@@ -23,6 +23,16 @@ Stack reversed(Stack stack) {
 
 constexpr Freedom as_edge{.cap = true};
 
+/// What is known of an end's field. The highest signal lies somewhat above the brightest that the
+/// blur leaves; where the field never comes near it nothing else would fix it. Ahead of the beam
+/// and beside it theta falls by some 10 within the patch, and no coefficient is much larger: of
+/// those that the samples do not tell, any change would seem to fit as well.
+void know_end(Patch& patch, bool tail) {
+  patch.prior.know(cap, patch.brightest + 0.2, 0.5);
+  if (tail) return know_smoothness(patch);
+  for (int k = 1; k < terms; ++k) patch.prior.know(k, 0, 10);
+}
+
 /// The field of an end of the pool; the law is known.
 Vector fit_field(const Patch& patch, double log_level, const TailLaw* law) {
   const auto with_law = [&](Vector p) {
@@ -79,6 +89,7 @@ std::optional<SharpEdge> fit_edge(const Stack& stack, double dark, const Blur& b
       make_patch(leading ? reversed(stack) : stack, dark, with_columns(blur), edge, log_level, end);
   if (!patch) return std::nullopt;
   if (law != nullptr) patch->steepness = law->steepness;
+  know_end(*patch, !leading);
   const Vector best = fit_field(*patch, log_level, law);
   const auto place = outermost(*patch, best, edge, log_level);
   if (!place) return std::nullopt;
@@ -100,6 +111,7 @@ std::optional<SharpEdge> fit_side(const Stack& stack, double dark, const Blur& b
   auto patch = make_side_patch(stack, dark, with_columns(blur), edge, log_level, side);
   if (!patch) return std::nullopt;
   if (law != nullptr) patch->steepness = law->steepness;
+  know_end(*patch, false);
   const Vector best = fit_field(*patch, log_level, law);
   const auto place = widest_place(*patch, best, log_level, side);
   if (!place) return std::nullopt;

@@ -52,16 +52,7 @@ std::optional<Patch> tail_patch(const Stack& stack, double dark, const Blur& blu
   patch->steepness = priors.steepness;
   patch->u_steepness = priors.u_steepness;
   if (priors.u_variance > 0) patch->prior.know(variance, 0, priors.u_variance);
-  // Heat conducted from the beam makes a field that changes over its distance, along the scan over
-  // the way back to the beam and across it over the pool's half width (Cauchy's estimate of the
-  // coefficients of a power series). What is curved more is noise.
-  for (int k = 0; k < terms; ++k) {
-    const int i = k / (across_order + 1), j = k % (across_order + 1);
-    if (i + j < 2) continue;
-    patch->prior.know(k, 0,
-                      std::pow(patch->scale / std::max(patch->to_beam, 1.0), i) *
-                          std::pow(patch->scale / std::max(patch->half_width, 1.0), j));
-  }
+  know_smoothness(*patch);
   // Heat of freezing over specific heat times liquidus: steels, nickel and titanium alloys have
   // 0.18 to 0.35.
   patch->narrowest = 0.16 * patch->steepness;
