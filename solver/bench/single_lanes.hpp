@@ -98,16 +98,21 @@ inline float fixed_point(double value, double step) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(steps));
 }
 
-/// own - other in units, of numbers in fixed point; beyond half the range it wraps around.
-[[gnu::always_inline]] inline SingleLane fixed_difference(float own, const SingleLane& other,
-                                                          double step) {
+/// other - own in steps, of numbers in fixed point; beyond half the range it wraps around.
+[[gnu::always_inline]] inline SingleLane fixed_steps(float own, const SingleLane& other) {
   using Unsigned = lanes_detail::Row<std::uint32_t, single_count>;
   using Signed = lanes_detail::Row<std::int32_t, single_count>;
   using Float = lanes_detail::Row<float, single_count>;
   // Unsigned, because there wrapping around is defined.
-  const Unsigned steps = std::bit_cast<std::uint32_t>(own) - std::bit_cast<Unsigned>(other);
+  const Unsigned steps = std::bit_cast<Unsigned>(other) - std::bit_cast<std::uint32_t>(own);
   const Float difference = __builtin_convertvector(std::bit_cast<Signed>(steps), Float);
-  return std::bit_cast<SingleLane>(difference) * SingleLane(step);
+  return std::bit_cast<SingleLane>(difference);
+}
+
+/// own - other in units.
+[[gnu::always_inline]] inline SingleLane fixed_difference(float own, const SingleLane& other,
+                                                          double step) {
+  return fixed_steps(own, other) * SingleLane(-step);
 }
 
 }  // namespace meltproof::solver

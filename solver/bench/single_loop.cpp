@@ -37,8 +37,8 @@ PairFields<float> rounded(const PairFields<double>& r, double h) {
           .vy = f(r.vy),
           .vz = f(r.vz),
           .density = f(r.density),
-          // Beside viscous stress, which is a velocity over h here, pressure carries an h.
-          .pressure = f(r.pressure * h),
+          // Beside viscous stress, which is a velocity over a step here, pressure carries a step.
+          .pressure = f(r.pressure * h * SingleBlock::place_step),
           .viscosity = f(r.viscosity),
           .conductivity = f(r.conductivity),
           .diffusivity = f(r.diffusivity)};
@@ -87,8 +87,13 @@ SingleBlock to_single(const PairBlock& block) {
   return single;
 }
 
+/// Differences stay in the steps of their fixed points, so distances are in steps of h while
+/// volumes are in h^3, and what is summed up is off by powers of two, which come last: W' is that
+/// of h = 1, W'/r and F are a step's share of it.
 void five_terms_single(const SingleBlock& block, std::vector<PairRates>& rates) {
-  const QuinticSpline kernel(1, 3);
+  constexpr double steps = 1 / SingleBlock::place_step;
+  QuinticSpline kernel(steps, 3);
+  kernel.normalisation *= steps * steps * steps * steps;
   const double h = block.h;
   const PairFields<float>* all = block.records.data();
   for (std::size_t i = 0; i < rates.size(); ++i) {
@@ -113,21 +118,19 @@ void five_terms_single(const SingleBlock& block, std::vector<PairRates>& rates) 
     PairSums<SingleLane> sums;
     for (std::size_t k = block.list.first[i]; k < block.list.last[i]; k += single_count) {
       PairFields<SingleLane> other = gather_single(all, &block.list.index[k]);
-      other.x = fixed_difference(r.x, other.x, -SingleBlock::place_step);
-      other.y = fixed_difference(r.y, other.y, -SingleBlock::place_step);
-      other.z = fixed_difference(r.z, other.z, -SingleBlock::place_step);
-      other.temperature =
-          fixed_difference(r.temperature, other.temperature, -SingleBlock::temperature_step);
-      other.concentration =
-          fixed_difference(r.concentration, other.concentration, -SingleBlock::concentration_step);
+      other.x = fixed_steps(r.x, other.x);
+      other.y = fixed_steps(r.y, other.y);
+      other.z = fixed_steps(r.z, other.z);
+      other.temperature = fixed_steps(r.temperature, other.temperature);
+      other.concentration = fixed_steps(r.concentration, other.concentration);
       add_pair(sums, own, square, other, kernel);
     }
     rates[i] = {static_cast<double>(r.density) * sum_lanes(sums.compression) / h,
-                sum_lanes(sums.fx) * h,
-                sum_lanes(sums.fy) * h,
-                sum_lanes(sums.fz) * h,
-                sum_lanes(sums.power) / (h * h),
-                sum_lanes(sums.concentration) / (h * h)};
+                sum_lanes(sums.fx) * steps * h,
+                sum_lanes(sums.fy) * steps * h,
+                sum_lanes(sums.fz) * steps * h,
+                sum_lanes(sums.power) * steps * SingleBlock::temperature_step / (h * h),
+                sum_lanes(sums.concentration) * steps * SingleBlock::concentration_step / (h * h)};
   }
 }
 
