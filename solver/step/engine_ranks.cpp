@@ -195,6 +195,11 @@ void Engine::update_copies() {
         out[1] = particles_.concentration[i];
       },
       [&](std::uint32_t i, const double* in) {
+        // Most of them stay as they are, and with them what follows, as in apply().
+        if (particles_.enthalpy[i] == in[0] && particles_.concentration[i] == in[1] &&
+            diffusivity_[i] == 0) {
+          return;
+        }
         particles_.enthalpy[i] = in[0];
         particles_.concentration[i] = in[1];
         refresh(i);
