@@ -29,8 +29,9 @@ constexpr double u_ends = 0.055;
 /// The same between leading edge and a step of the emissivity, and of one side.
 constexpr double u_ends_step = 0.02, u_side = 0.06;
 /// Beside a shoulder both ends come out too far in, the front by 0.05 to 0.08 px and the leading
-/// edge by 0.04 even without noise, and a length over 15 passages at a signal to noise of 100 by
-/// 0.09 px with a scatter of 0.05 beyond that of the draws: a known effect, corrected (GUM 3.2.4).
+/// edge by 0.04 even without noise, and a length over 15 synthetic passages at a signal to noise of
+/// 100 by 0.09 px with a scatter of 0.05 beyond that of the draws: a known effect, corrected
+/// (GUM 3.2.4).
 constexpr double shortening = 0.09, u_ends_shoulder = 0.05;
 
 /// Half the width of the middle 68.3 %: the standard deviation of a normal distribution, and finite
@@ -209,7 +210,12 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
     const double least_doubt = shoulder ? 0.6 : 0.2;
     add(
         "model of the ends", "B",
-        "what the fits leave on analytic pools; an extrapolated depth's by half its own doubt",
+        std::string("what the fits leave on synthetic analytic pools; an extrapolated depth's by "
+                    "half its own doubt") +
+            (shoulder ? fmt::format("; {:.2g} px added to the length, by which synthetic passages "
+                                    "with latent heat come out short",
+                                    shortening)
+                      : ""),
         [&, least_doubt, shoulder](gsl_rng* r) {
           const double length = normal(r, !pool->front_found ? u_ends
                                           : shoulder         ? u_ends_shoulder
