@@ -28,6 +28,32 @@ std::vector<PairRates> scalar_rates(const PairBlock& block) {
 
 }  // namespace
 
+// All widths, those too that the lanes of this machine do not have.
+template <class Number, std::size_t Count>
+void expect_transposed() {
+  lanes_detail::Row<Number, Count> rows[Count];
+  for (std::size_t i = 0; i < Count; ++i) {
+    for (std::size_t k = 0; k < Count; ++k) {
+      rows[i][k] = static_cast<Number>(100 * i + k);
+    }
+  }
+  lanes_detail::transpose<Number, Count>(rows);
+  for (std::size_t i = 0; i < Count; ++i) {
+    for (std::size_t k = 0; k < Count; ++k) {
+      EXPECT_EQ(rows[i][k], static_cast<Number>(100 * k + i)) << Count << " " << i << " " << k;
+    }
+  }
+}
+
+TEST(Lanes, RowsBecomeColumns) {
+  expect_transposed<double, 2>();
+  expect_transposed<double, 4>();
+  expect_transposed<double, 8>();
+  expect_transposed<float, 4>();
+  expect_transposed<float, 8>();
+  expect_transposed<float, 16>();
+}
+
 // Lanes add the same summands in another order: sums differ by round-off of the largest, never
 // more.
 TEST(PairLoop, LanesAndScalarsAgreeToRoundOff) {

@@ -83,7 +83,7 @@ template <template <class> class Fields>
       const char* from = reinterpret_cast<const char*>(records + index[lane]);
       std::memcpy(&rows[lane], from + block * sizeof(float), sizeof(rows[lane]));
     }
-    lanes_detail::transpose(rows);
+    lanes_detail::transpose<float, single_count>(rows);
     for (std::size_t field = 0; field < single_count; ++field) {
       columns[block + field] = rows[field];
     }

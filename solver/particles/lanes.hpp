@@ -126,27 +126,72 @@ struct VectorOf {
 template <class Number, std::size_t Count>
 using Row = typename VectorOf<Number, Count>::Type;
 
-/// Exchanges the off-diagonal blocks of side `Step` between two rows that are `Step` apart.
-template <std::size_t Step, class Vector, std::size_t... Column>
-[[gnu::always_inline]] inline void exchange(Vector& a, Vector& b, std::index_sequence<Column...>) {
-  constexpr std::size_t other = sizeof...(Column);  // where b's numbers begin
-  const Vector upper =
-      __builtin_shufflevector(a, b, ((Column & Step) != 0 ? other + Column - Step : Column)...);
-  b = __builtin_shufflevector(a, b, ((Column & Step) != 0 ? other + Column : Column + Step)...);
-  a = upper;
+/// Numbers in 128 bits: what the processor interleaves in one cycle, without a table of places.
+template <class Number>
+inline constexpr std::size_t block_of = 16 / sizeof(Number);
+
+/// Of two rows the first (`Upper` 0) or second halves of each block of 128 bits, in turns and in
+/// parts of `Part` numbers.
+template <std::size_t Upper, std::size_t Part, class Number, class Vector, std::size_t... To>
+[[gnu::always_inline]] inline Vector interleave(const Vector& a, const Vector& b,
+                                                std::index_sequence<To...>) {
+  constexpr std::size_t count = sizeof...(To), block = block_of<Number>;
+  return __builtin_shufflevector(
+      a, b,
+      (To / block * block + Upper * (block / 2) + To % block / (2 * Part) * Part + To % Part +
+       (To / Part % 2 != 0 ? count : 0))...);
 }
 
-/// Rows become columns: blocks of one, two, four, ... change places. (Eklundh 1972)
-template <std::size_t Step = 1, class Number, std::size_t Count>
-[[gnu::always_inline]] inline void transpose(Number (&row)[Count]) {
-  if constexpr (Step < Count) {
+/// Of two rows the even (`Odd` 0) or odd blocks of 128 bits, a's before b's.
+template <std::size_t Odd, class Number, class Vector, std::size_t... To>
+[[gnu::always_inline]] inline Vector every_other_block(const Vector& a, const Vector& b,
+                                                       std::index_sequence<To...>) {
+  constexpr std::size_t block = block_of<Number>;
+  return __builtin_shufflevector(a, b, ((2 * (To / block) + Odd) * block + To % block)...);
+}
+
+/// **Rows become columns.** First within blocks of 128 bits, by interleaving numbers, then the
+/// blocks among each other; both are single instructions without a table, unlike exchanging blocks
+/// of two across all of a register.
+template <class Number, std::size_t Count>
+[[gnu::always_inline]] inline void transpose(Row<Number, Count> (&row)[Count]) {
+  constexpr std::size_t block = block_of<Number>;
+  constexpr auto to = std::make_index_sequence<Count>{};
 #pragma GCC unroll 16
-    for (std::size_t i = 0; i < Count; ++i) {
-      if ((i & Step) == 0) {
-        exchange<Step>(row[i], row[i + Step], std::make_index_sequence<Count>{});
-      }
+  for (std::size_t i = 0; i < Count; i += block) {
+    Row<Number, Count>* r = row + i;
+    if constexpr (block == 2) {
+      const auto a = r[0];
+      r[0] = interleave<0, 1, Number>(a, r[1], to);
+      r[1] = interleave<1, 1, Number>(a, r[1], to);
+    } else {
+      const auto a = interleave<0, 1, Number>(r[0], r[1], to);
+      const auto b = interleave<1, 1, Number>(r[0], r[1], to);
+      const auto c = interleave<0, 1, Number>(r[2], r[3], to);
+      const auto d = interleave<1, 1, Number>(r[2], r[3], to);
+      r[0] = interleave<0, 2, Number>(a, c, to);
+      r[1] = interleave<1, 2, Number>(a, c, to);
+      r[2] = interleave<0, 2, Number>(b, d, to);
+      r[3] = interleave<1, 2, Number>(b, d, to);
     }
-    transpose<2 * Step>(row);
+  }
+#pragma GCC unroll 16
+  for (std::size_t i = 0; i < block; ++i) {
+    Row<Number, Count>* r = row + i;
+    if constexpr (Count == 2 * block) {
+      const auto a = r[0];
+      r[0] = every_other_block<0, Number>(a, r[block], to);
+      r[block] = every_other_block<1, Number>(a, r[block], to);
+    } else if constexpr (Count == 4 * block) {
+      const auto a = every_other_block<0, Number>(r[0], r[block], to);
+      const auto b = every_other_block<1, Number>(r[0], r[block], to);
+      const auto c = every_other_block<0, Number>(r[2 * block], r[3 * block], to);
+      const auto d = every_other_block<1, Number>(r[2 * block], r[3 * block], to);
+      r[0] = every_other_block<0, Number>(a, c, to);
+      r[block] = every_other_block<0, Number>(b, d, to);
+      r[2 * block] = every_other_block<1, Number>(a, c, to);
+      r[3 * block] = every_other_block<1, Number>(b, d, to);
+    }
   }
 }
 
@@ -171,7 +216,7 @@ template <template <class> class Fields>
       const char* from = reinterpret_cast<const char*>(records + index[lane]);
       std::memcpy(&rows[lane], from + block * sizeof(double), sizeof(rows[lane]));
     }
-    lanes_detail::transpose(rows);
+    lanes_detail::transpose<double, lane_count>(rows);
     for (std::size_t field = 0; field < lane_count; ++field) {
       columns[block + field] = rows[field];
     }
