@@ -48,8 +48,8 @@ InputTable reference_table(Settings& s) {
                  .unit = "1",
                  .about = "largest half width of the length's 95 % interval, over the length; a "
                           "length that is known less well is not given as independent of the "
-                          "emissivity. Give 0.02 where all should be within 2 %: fewer lengths "
-                          "are given then",
+                          "emissivity. Give 0.0133 where all must be within 2 %, three standard "
+                          "deviations: fewer lengths are given then",
                  .minimum = 1e-3,
                  .maximum = 10})
       .quantity(s.rules.freezing_heat,
