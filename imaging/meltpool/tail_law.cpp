@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <gsl/gsl_sf_lambert.h>
+
 namespace meltproof::imaging {
 namespace {
 
@@ -19,13 +21,21 @@ Ramp ramp(double z, double width) {
 
 }  // namespace
 
+Steepness::Steepness(double by_log_temperature) : value_(by_log_temperature) {
+  // x / (1 - exp(-x)) = B, solved by Lambert's function.
+  const double b = std::max(by_log_temperature, 1.02);
+  x_ = b + gsl_sf_lambert_W0(-b * std::exp(-b));
+}
+
 TailLawValue tail_law(const TailLaw& law, double theta, double cell) {
-  const double b = law.steepness;
-  const double below = (theta - law.log_signal) / b;
-  if (below > 0.5 || (law.ratio == 0 && law.interval == 0)) return {.log_signal = theta};
-  const double liquid = 1 / (1 - below);  // tau
+  const double b = law.steepness, x = law.steepness.x(), black = std::expm1(x);
+  const double below = theta - law.log_signal;
+  if (below > 0.5 * b || (law.ratio == 0 && law.interval == 0)) return {.log_signal = theta};
+  const double dim = black * std::exp(-below);  // exp(x / tau) - 1
+  const double liquid = x / std::log1p(dim);    // tau
+  const double tau_theta = liquid * liquid / x * dim / (1 + dim);
   const double q = 1 - liquid;
-  const double cell_q = std::max(cell / b * liquid * liquid, 1e-9);
+  const double cell_q = std::max(cell * tau_theta, 1e-9);
   if (q <= -0.5 * cell_q) return {.log_signal = theta};
   const double width = law.interval / b;
   const Ramp far = ramp(q + 0.5 * cell_q, width), near = ramp(q - 0.5 * cell_q, width);
@@ -33,17 +43,18 @@ TailLawValue tail_law(const TailLaw& law, double theta, double cell) {
   const double f_q = (far.value - near.value) / cell_q;
   const double f_width = (far.by_width - near.by_width) / cell_q;
   const double latent = (1 - TailLaw::sensible) * width;
-  const double tau = liquid + latent * f;
+  const double tau = liquid + latent * f, dim_now = std::expm1(x / tau);
+  const double by_tau = x / (tau * tau) * (1 + 1 / dim_now);  // of ln S
   const double mixed = 1 + f * std::expm1(law.ratio);
   const double by_f = std::expm1(law.ratio) / mixed;
   TailLawValue value;
-  value.log_signal = law.log_signal + b * (1 - 1 / tau) + std::log(mixed);
-  const double by_q = b / (tau * tau) * (latent * f_q - 1) + by_f * f_q;
-  value.by_theta = -by_q * liquid * liquid / b;
+  value.log_signal = law.log_signal + std::log(black / dim_now) + std::log(mixed);
+  const double by_q = by_tau * (latent * f_q - 1) + by_f * f_q;
+  value.by_theta = -by_q * tau_theta;
   value.by_theta_star = 1 - value.by_theta;
   value.by_ratio = f * std::exp(law.ratio) / mixed;
   value.by_interval =
-      (b / (tau * tau) * ((1 - TailLaw::sensible) * f + latent * f_width) + by_f * f_width) / b;
+      (by_tau * ((1 - TailLaw::sensible) * f + latent * f_width) + by_f * f_width) / b;
   return value;
 }
 

@@ -24,14 +24,28 @@ TEST(TailLaw, StepsAbruptlyWhereNoHeatIsReleased) {
 }
 
 // Energy: while the metal freezes it gives back what it released, so that far behind the front its
-// temperature, 1/(1 - ln S / B), is higher by L than that of liquid metal of the same enthalpy.
+// temperature by Planck's law is higher by L than that of liquid metal of the same enthalpy.
 TEST(TailLaw, ReturnsTheHeatThatIsReleased) {
   const TailLaw law{.log_signal = star, .interval = 0.6};
   const double theta = star - 1.4;
-  const auto tau = [&](double log_signal) { return 1 / (1 - (log_signal - star) / law.steepness); };
+  const double x = law.steepness.x();
+  const auto tau = [&](double log_signal) {
+    return x / std::log(1 + (std::exp(x) - 1) * std::exp(star - log_signal));
+  };
   const double released = (1 - TailLaw::sensible) * law.interval / law.steepness;
   EXPECT_NEAR(tau(tail_law(law, theta, 0.02).log_signal) - tau(theta), released, 1e-12);
   EXPECT_NEAR(law.rise(), 0.88 * 0.6, 1e-12);
+}
+
+// Of Planck's law, and of its limits: Wien's at short waves, Rayleigh's and Jeans's at long ones.
+TEST(TailLaw, KnowsTheWavelengthOfItsSteepness) {
+  for (const double b : {1.05, 1.5, 2.5, 9.6}) {
+    const Steepness s = b;
+    EXPECT_DOUBLE_EQ(s, b);
+    EXPECT_NEAR(s.x() / (1 - std::exp(-s.x())), b, 1e-12);
+  }
+  EXPECT_NEAR(Steepness(20).x(), 20, 1e-6);
+  EXPECT_NEAR(Steepness(0.5).x(), 0.04, 1e-3);
 }
 
 TEST(TailLaw, HasTheDerivativesOfItsValue) {
