@@ -55,9 +55,11 @@ InputTable reference_table(Settings& s) {
       .quantity(s.rules.freezing_heat,
                 {.name = "freezing_heat",
                  .unit = "1",
-                 .about = "heat that the alloy gives off from liquidus to solidus, over specific "
-                          "heat times liquidus, 0.19 to 0.23 for 316L; without it 0.16 to 0.48 "
-                          "are taken to be as likely",
+                 .about = "heat that the alloy gives off from liquidus to solidus (latent heat and "
+                          "what cools it through that range), over specific heat times "
+                          "liquidus, 0.19 to 0.23 for 316L; `make process MATERIAL=` takes it "
+                          "from the material's file; without it 0.16 to 0.48 are taken to be "
+                          "as likely",
                  .minimum = 0.05,
                  .maximum = 1})
       .quantity(s.rules.u_freezing_heat,

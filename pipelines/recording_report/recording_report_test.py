@@ -45,6 +45,13 @@ def process(**variables):
                           env=environment, check=False)
 
 
+def material(named):
+    """The three lines that material.py says of a material."""
+    done = subprocess.run(["pipelines/python.sh", "pipelines/recording_report/material.py", str(named)], check=True,
+                          capture_output=True, text=True, cwd=ROOT)
+    return done.stdout.removesuffix("\n").split("\n")
+
+
 class Runs:
     """What takes long, begun together before the first test: the recordings filmed, then a pool, a recording without
     one and a campaign each processed."""
@@ -101,6 +108,7 @@ class OneRecording(unittest.TestCase):
         rows = {row["name"]: row for row in self.summary["parameters"]}
         self.assertEqual((rows["reference temperature"]["value"], rows["reference temperature"]["source"]),
                          (1683, "given"))
+        self.assertEqual((rows["freezing heat"]["value"], rows["freezing heat"]["source"]), (0.209, "given"))
         self.assertEqual(rows["transmission of the windows"]["source"], "file")
         self.assertEqual(rows["pixel size along x"]["source"], "calibration")
         self.assertEqual(rows["scan speed"]["source"], "unknown")
@@ -108,7 +116,7 @@ class OneRecording(unittest.TestCase):
         self.assertAlmostEqual(rows["point spread, sigma"]["value"], 0.8, delta=0.02)
         self.assertLess(rows["point spread, sigma"]["u"], 0.06)  # by the scatter of single rows at SNR 20
         for words in ("given by you", "your calibration", "the recording&#39;s file", "nobody says it",
-                      "liquidus of 316L"):
+                      "liquidus of 316L", "Its freezing heat is 0.209: 274.7 kJ/kg between solidus (1633 K)"):
             self.assertIn(words, self.page)
 
     def test_the_tail_is_drawn_with_the_reference_signal(self):
@@ -133,8 +141,8 @@ class OneRecording(unittest.TestCase):
         before = {name: (self.output / name).read_bytes() for name in ("report.html", "report.pdf", "animation.png")}
         again = subprocess.run(["pipelines/python.sh", "pipelines/recording_report/recording_report.py",
                                 str(self.output), "--calibration", str(self.output / "calibration.json"), "--material",
-                                "The reference temperature is the liquidus of 316L, 1683 K (316L.toml; source: Table "
-                                "A1)."], cwd=ROOT, env={**os.environ, "SOURCE_DATE_EPOCH": "0"}, check=False)
+                                material("316L")[2]], cwd=ROOT, env={**os.environ, "SOURCE_DATE_EPOCH": "0"},
+                               check=False)
         self.assertEqual(again.returncode, 0)
         for name, content in before.items():
             self.assertEqual((self.output / name).read_bytes(), content, name)
@@ -153,6 +161,46 @@ class WithoutAPool(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn("neither a file nor a material", done.stderr)
             self.assertFalse((Path(folder) / "out").exists())
+
+
+class Material(unittest.TestCase):
+    def test_the_freezing_heat_is_that_of_the_material_s_own_enthalpy(self):
+        # Heat between solidus and liquidus in J/kg, specific heats of solid and liquid, liquidus: README of data/materials.
+        for named, heat, solid, liquid, liquidus in (("316L", 274.7e3, 714.29, 847.46, 1683),
+                                                     ("IN625", 58.85 * 4431.82, 681.36, 750.65, 1622),
+                                                     ("IN718", 76 * 3457.34, 645.56, 720, 1609)):
+            temperature, freezing, words = material(named)
+            self.assertEqual(temperature, f"{liquidus} K")
+            self.assertAlmostEqual(float(freezing), heat / (0.5 * (solid + liquid) * liquidus), delta=2e-4)
+            self.assertIn(f"Its freezing heat is {float(freezing):.3g}: {heat / 1e3:.4g} kJ/kg", words)
+            self.assertIn(f"{named}.toml", words)
+
+    def test_the_latent_heat_may_stand_in_several_pieces(self):
+        whole, parts = "5494.51 J kg-1 K-1", ("3000 J kg-1 K-1", "7989.02 J kg-1 K-1")
+        text = (ROOT / "data/materials/316L.toml").read_text()
+        old = f'from = "1633 K"\nto = "1683 K"\nslope = "{whole}"'
+        new = (f'from = "1633 K"\nto = "1658 K"\nslope = "{parts[0]}"\n\n[[enthalpy.piece]]\n'
+               f'from = "1658 K"\nto = "1683 K"\nslope = "{parts[1]}"')
+        self.assertIn(old, text)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "two.toml"
+            path.write_text(text.replace(old, new))
+            self.assertEqual(material(path)[1], material("316L")[1])
+
+    def test_a_file_that_says_less_gives_its_liquidus_alone_and_the_sentence_says_so(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "own.toml"
+            for more, said in (("", "it has no solidus"),
+                               ('[solidus]\nvalue = "1360 degC"\n', 'its solidus is "1360 degC"'),
+                               ('[solidus]\nvalue = "1700 K"\n', "its solidus is not below its liquidus"),
+                               ('[solidus]\nvalue = "1633 K"\n', "it has no enthalpy by pieces"),
+                               ('[solidus]\nvalue = "1633 K"\n[[enthalpy.piece]]\nfrom = "298 K"\nto = "1633 K"\n'
+                                'slope = "714 J kg-1 K-1"\n', "does not reach beyond solidus and liquidus")):
+                path.write_text('name = "own"\n[liquidus]\nvalue = "1683 K"\nsource = "me"\n' + more)
+                temperature, freezing, words = material(path)
+                self.assertEqual((temperature, freezing), ("1683 K", ""))
+                self.assertIn("was not handed on", words)
+                self.assertIn(said, words)
 
 
 class WhatCannotBeUsed(unittest.TestCase):
