@@ -31,7 +31,8 @@ const std::vector<std::pair<std::string, std::string>> shared_options = {
     {"level", "signal in counts at which the pool ends"},
     {"reference-temperature", "temperature at which the pool ends, as \"1683 K\""},
     {"freezing-heat",
-     "heat of freezing over specific heat times liquidus, 0.19 to 0.23 for 316L; narrows the length "
+     "heat of freezing over specific heat times liquidus, 0.19 to 0.23 for 316L; narrows the "
+     "length "
      "that the recording itself shows ([reference] freezing_heat)"},
     {"emissivity", "emissivity of solid metal in the camera's band"},
     {"emissivity-liquid", "emissivity of liquid metal, where it is less"},

@@ -134,12 +134,15 @@ InputTable budget_table(Settings& s) {
                           "differ by some 10 K with composition",
                  .minimum = 0,
                  .maximum = 500})
-      .quantity(b.u_emissivity, {.name = "u_emissivity",
-                                 .unit = "1",
-                                 .about = "of an emissivity that the level rests on, relative; "
-                                          "published values of steel scatter by more",
-                                 .minimum = 0,
-                                 .maximum = 1})
+      .quantity(b.u_emissivity,
+                {.name = "u_emissivity",
+                 .unit = "1",
+                 .about = "of an emissivity that the level rests on, relative; say it where the "
+                          "emissivity was measured. Without it half the distance, in ln, from "
+                          "the farther end of what is published for liquid metals between 3 and "
+                          "5 um, 0.15 to 0.5: 0.35 for an emissivity of 0.3",
+                 .minimum = 0,
+                 .maximum = 1})
       .quantity(b.u_transmission, {.name = "u_transmission",
                                    .unit = "1",
                                    .about = "of the windows' transmission, relative: the paper "

@@ -17,6 +17,7 @@ ROOT = HERE.parent.parent
 BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
 sys.path.insert(0, str(HERE))
 import campaign  # noqa: E402
+from material_test import material  # noqa: E402
 
 SCALE = "data/scales/synthetic_across_x.h5"
 
@@ -43,13 +44,6 @@ def process(**variables):
     environment.update({"MELTPROOF_BIN": str(BIN), "SOURCE_DATE_EPOCH": "0", **variables})
     return subprocess.run(["bash", "pipelines/process_recording.sh"], capture_output=True, text=True, cwd=ROOT,
                           env=environment, check=False)
-
-
-def material(named):
-    """The three lines that material.py says of a material."""
-    done = subprocess.run(["pipelines/python.sh", "pipelines/recording_report/material.py", str(named)], check=True,
-                          capture_output=True, text=True, cwd=ROOT)
-    return done.stdout.removesuffix("\n").split("\n")
 
 
 class Runs:
@@ -129,6 +123,19 @@ class OneRecording(unittest.TestCase):
         self.assertLess(misfit, 4)  # the exported model is the one that was fitted
         self.assertIn("S* is the signal of liquid metal", self.page)
 
+    def test_a_length_that_rests_on_an_emissivity_says_what_would_narrow_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            settings, output = Path(folder) / "settings.toml", Path(folder) / "out"
+            settings.write_text('reference_signal = "off"\nemissivity_liquid = 0.3\n')
+            done = process(RECORDING=str(RUNS.pool), OUTPUT=str(output), SETTINGS=str(settings))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            page = (output / "report.html").read_text()
+            for said in ("They are not independent of the emissivity", "Most of the interval is what is not known of "
+                         "the emissivity. It would be narrower", "MATERIAL", "35 % (assumed"):
+                self.assertIn(said, page)
+            self.assertIn("It would be narrower", done.stdout)
+        self.assertNotIn("It would be narrower", self.page)
+
     def test_the_page_moves_and_the_pdf_is_one(self):
         self.assertIn("The frames in turn", self.page)
         self.assertEqual((self.output / "report.pdf").read_bytes()[:5], b"%PDF-")
@@ -161,46 +168,6 @@ class WithoutAPool(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn("neither a file nor a material", done.stderr)
             self.assertFalse((Path(folder) / "out").exists())
-
-
-class Material(unittest.TestCase):
-    def test_the_freezing_heat_is_that_of_the_material_s_own_enthalpy(self):
-        # Heat between solidus and liquidus in J/kg, specific heats of solid and liquid, liquidus: README of data/materials.
-        for named, heat, solid, liquid, liquidus in (("316L", 274.7e3, 714.29, 847.46, 1683),
-                                                     ("IN625", 58.85 * 4431.82, 681.36, 750.65, 1622),
-                                                     ("IN718", 76 * 3457.34, 645.56, 720, 1609)):
-            temperature, freezing, words = material(named)
-            self.assertEqual(temperature, f"{liquidus} K")
-            self.assertAlmostEqual(float(freezing), heat / (0.5 * (solid + liquid) * liquidus), delta=2e-4)
-            self.assertIn(f"Its freezing heat is {float(freezing):.3g}: {heat / 1e3:.4g} kJ/kg", words)
-            self.assertIn(f"{named}.toml", words)
-
-    def test_the_latent_heat_may_stand_in_several_pieces(self):
-        whole, parts = "5494.51 J kg-1 K-1", ("3000 J kg-1 K-1", "7989.02 J kg-1 K-1")
-        text = (ROOT / "data/materials/316L.toml").read_text()
-        old = f'from = "1633 K"\nto = "1683 K"\nslope = "{whole}"'
-        new = (f'from = "1633 K"\nto = "1658 K"\nslope = "{parts[0]}"\n\n[[enthalpy.piece]]\n'
-               f'from = "1658 K"\nto = "1683 K"\nslope = "{parts[1]}"')
-        self.assertIn(old, text)
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "two.toml"
-            path.write_text(text.replace(old, new))
-            self.assertEqual(material(path)[1], material("316L")[1])
-
-    def test_a_file_that_says_less_gives_its_liquidus_alone_and_the_sentence_says_so(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "own.toml"
-            for more, said in (("", "it has no solidus"),
-                               ('[solidus]\nvalue = "1360 degC"\n', 'its solidus is "1360 degC"'),
-                               ('[solidus]\nvalue = "1700 K"\n', "its solidus is not below its liquidus"),
-                               ('[solidus]\nvalue = "1633 K"\n', "it has no enthalpy by pieces"),
-                               ('[solidus]\nvalue = "1633 K"\n[[enthalpy.piece]]\nfrom = "298 K"\nto = "1633 K"\n'
-                                'slope = "714 J kg-1 K-1"\n', "does not reach beyond solidus and liquidus")):
-                path.write_text('name = "own"\n[liquidus]\nvalue = "1683 K"\nsource = "me"\n' + more)
-                temperature, freezing, words = material(path)
-                self.assertEqual((temperature, freezing), ("1683 K", ""))
-                self.assertIn("was not handed on", words)
-                self.assertIn(said, words)
 
 
 class WhatCannotBeUsed(unittest.TestCase):
