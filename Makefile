@@ -47,8 +47,8 @@ help:
 	@echo '  THREADS=N                     threads of a simulation                          (now $(THREADS))'
 	@echo
 	@echo '  make process takes also CALIBRATION=scale.json, or the image of a scale together with'
-	@echo '  GRADUATION="100 um" GRADUATION_IS=period|line-width; LEVEL=signal at the edge of the pool;'
-	@echo '  and OUTPUT=folder for the results.'
+	@echo '  GRADUATION="100 um" GRADUATION_IS=period|line-width; MATERIAL=316L for liquidus and freezing heat,'
+	@echo '  or LEVEL=signal at the edge of the pool; SETTINGS=file.toml; and OUTPUT=folder for the results.'
 	@echo
 	@echo 'Each job first installs what is missing of pipelines/packages.txt (with apt) and builds.'
 

@@ -27,10 +27,11 @@ fi
 [ -z "${SETTINGS:-}" ] || [ -f "$SETTINGS" ] || refuse "the settings '$SETTINGS' do not exist."
 [ "${1:-}" = --check ] && exit 0
 
-reference='' material=''
+reference='' freezing='' material=''
 if [ -n "${MATERIAL:-}" ]; then
   said=$(pipelines/python.sh pipelines/recording_report/material.py "$MATERIAL")
   reference=$(head -n 1 <<<"$said")
+  freezing=$(sed -n 2p <<<"$said") # empty where the material's file does not tell it
   material=$(tail -n 1 <<<"$said")
 fi
 
@@ -69,6 +70,7 @@ fi
 [ -n "${SETTINGS:-}" ] && options+=(--settings "$SETTINGS")
 [ -n "${SCAN_SPEED:-}" ] && options+=(--scan-speed "$SCAN_SPEED")
 [ -n "$reference" ] && options+=(--reference-temperature "$reference")
+[ -n "$freezing" ] && options+=(--freezing-heat "$freezing")
 
 echo "== recording $recording"
 status=0

@@ -11,6 +11,7 @@
 #include <gsl/gsl_rng.h>
 
 #include "imaging/meltpool/frame_scatter.hpp"
+#include "imaging/meltpool/level_doubt.hpp"
 
 namespace meltproof::imaging {
 namespace {
@@ -44,28 +45,19 @@ double deviation(std::vector<double> v) {
   return 0.5 * (part(0.8413) - part(0.1587));
 }
 
-/// Standard uncertainty of ln(S - dark) of the level, and what it is made of.
-std::pair<double, std::string> level_uncertainty(const RecordingHeader& h, const Analysis& a,
-                                                 const BudgetSettings& s) {
-  switch (a.level.kind) {
-    case LevelKind::given:
-      return {s.u_level, "of the level that was given (u_level)"};
-    case LevelKind::radiometry: {
-      const auto& r = *h.radiometry;
-      const double t = a.level.reference_temperature, dark = a.level.interpolation.dark;
-      const double slope = std::log((signal(r, t + 1) - dark) / (signal(r, t - 1) - dark)) / 2;
-      return {std::hypot(slope * s.u_reference_temperature,
-                         std::hypot(s.u_emissivity, s.u_transmission)),
-              fmt::format("reference temperature {:.3g} K, emissivity {:.3g} %, transmission "
-                          "{:.3g} %: the level is not independent of them",
-                          s.u_reference_temperature, 100 * s.u_emissivity, 100 * s.u_transmission)};
-    }
-    case LevelKind::temperature:
-      return {s.u_reference_temperature / a.level.reference_temperature,
-              fmt::format("reference temperature {:.3g} K", s.u_reference_temperature)};
-    default:
-      return {0, "of a threshold of brightness none is known"};
-  }
+/// Dimensions of the mean pool, or without it of frames, at a level whose ln(S - dark) is raised.
+LevelEffect::SizeAt size_at(const Analysis& a, const Stack* stack, double along, double across,
+                            std::shared_ptr<UnevenPixels> frames) {
+  if (stack == nullptr)
+    return [frames](double shift) { return frames->with_gain(std::exp(-shift)); };
+  return [=, &a](double shift) -> std::optional<Effect> {
+    const Level level = raised(a.level, shift);
+    const auto m = measure_stack(*stack, level);
+    if (!m) return Effect{};
+    const double last = static_cast<double>(stack->columns - 1) / Stack::samples;
+    if (m->end < 1 || m->onset > last - 1) return std::nullopt;
+    return Effect{along * m->length, across * m->depth};
+  };
 }
 
 }  // namespace
@@ -146,8 +138,16 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
         const Effect e = (*uneven)(r);
         return Effect{share.length * e.length, share.depth * e.depth};
       });
+  if (!pool || !pool->front_found) {
+    const auto [u_log, how] = level_doubt(h, a.level, s, found != nullptr ? found->relative_u : 0);
+    add("level", "B", how,
+        [normal, u = u_log,
+         effect = LevelEffect(u_log, {a.length.mean, a.depth.mean},
+                              size_at(a, stack, along, across, uneven))](gsl_rng* r) {
+          return effect(normal(r, u));
+        });
+  }
   if (pool) {
-    const auto [u_log, how] = level_uncertainty(h, a, s);
     if (pool->front_found)
       add("reference signal S*", "A",
           "front, S*, width of the shoulder and point spread together, over all that fits the tail "
@@ -159,11 +159,6 @@ Budget uncertainty_budget(const Recording& recording, const Analysis& a, const P
                 pool->sides_fitted ? 0 : pool->depth_by_log_level * normal(r, found->relative_u);
             return Effect{along * d.length, across * (d.depth + extrapolated)};
           });
-    else
-      add("level", "B", how, [&, u = u_log](gsl_rng* r) {
-        const double d = normal(r, u);
-        return Effect{along * pool->by_log_level * d, across * pool->depth_by_log_level * d};
-      });
     if (pool->front_found && !pool->sides_fitted) {
       const double apart = std::log((found->blurred_signal - dark) / (found->signal - dark));
       add("level of the depth", "B",

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ struct BudgetSettings {
   double u_point_spread = 0.1;         ///< px
   double u_integration_time = 0.01;    ///< 1, relative
   double u_reference_temperature = 5;  ///< K: how well composition fixes the liquidus
-  double u_emissivity = 0.1;           ///< 1, relative, where the level rests on an emissivity
-  double u_transmission = 0.01;        ///< 1, relative, where the level rests on it
-  double u_level = 0;                  ///< 1, relative, of a level that was given
-  double non_uniformity = 0.005;       ///< 1, standard deviation between the pixels' gains
+  /// 1, relative, where the level rests on an emissivity. Nothing: u_assumed_emissivity().
+  std::optional<double> u_emissivity;
+  double u_transmission = 0.01;   ///< 1, relative, where the level rests on it
+  double u_level = 0;             ///< 1, relative, of a level that was given
+  double non_uniformity = 0.005;  ///< 1, standard deviation between the pixels' gains
   long long draws = 1000;
   std::uint64_t seed = 1;
 };

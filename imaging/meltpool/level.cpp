@@ -89,6 +89,7 @@ Level at_reference_temperature(const RecordingHeader& header, const LevelRequest
   const double liquid =
       request.emissivity_liquid.value_or(header.emissivity_liquid.value_or(r.emissivity));
   level.kind = LevelKind::radiometry;
+  level.emissivity = std::min(liquid, r.emissivity);
   level.value = signal(r, level.reference_temperature);
   level.interpolation = {.logarithmic = true, .dark = signal(r, 0)};
   level.how = fmt::format(
@@ -265,6 +266,16 @@ Level find_level(const Recording& recording, const LevelRequest& request) {
                     "scale of kelvin per count.",
                     header.path.string()));
   return by_contrast(recording);
+}
+
+Level raised(Level level, double shift) {
+  const double dark = level.interpolation.dark, factor = std::exp(shift);
+  level.value = dark + factor * (*level.value - dark);
+  if (level.step) {
+    level.step->liquid = level.step->dark + factor * (level.step->liquid - level.step->dark);
+    level.step->solid = level.step->dark + factor * (level.step->solid - level.step->dark);
+  }
+  return level;
 }
 
 std::string below_level_reason(const RecordingHeader& header, const Level& level, double highest,

@@ -42,6 +42,7 @@ struct Level {
   std::string how;     ///< one sentence
   std::string reason;  ///< why there is no value, one sentence
   double reference_temperature = 0;  ///< K; 0 where none was used
+  double emissivity = 0;  ///< of liquid metal, 1, that a level by radiometry rests on; else 0
   Interpolation interpolation;
   std::optional<EmissivityStep>
       step;  ///< where the emissivities of both phases are known and differ
@@ -73,6 +74,10 @@ Contrast contrast(const Frame& frame, RegionFinder& finder, const ContrastRule& 
 /// Finds the level of a recording. Only the contrast rule reads frames.
 /// @throws InputError if the request does not fit what the recording holds.
 Level find_level(const Recording& recording, const LevelRequest& request);
+
+/// The level, and the step in it, with another ln(S - dark).
+/// @param shift what is added to it, 1. @param level one with a value.
+Level raised(Level level, double shift);
 
 /// A sentence for a recording whose brightest value stays below the level.
 std::string below_level_reason(const RecordingHeader& header, const Level& level, double highest,

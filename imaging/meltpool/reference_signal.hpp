@@ -32,8 +32,8 @@ struct ReferenceRules {
   /// within 3 %, and 132 with 1.33 %, all within 2 % (camera/coverage_test.cpp).
   double uncertainty = 0.03;
   /// Heat that the alloy gives off from liquidus to solidus, over specific heat times liquidus:
-  /// 0.19 to 0.23 for 316L (274.7 kJ/kg; 847 to 714 J/(kg K), 1683 K). Nothing: 0.16 to 0.48 are
-  /// alike.
+  /// 0.19 to 0.23 for 316L (274.7 kJ/kg; 847 to 714 J/(kg K), 1683 K). It holds the latent heat
+  /// and what cools the metal from liquidus to solidus. Nothing: 0.16 to 0.48 are alike.
   std::optional<double> freezing_heat;
   double u_freezing_heat = 0.15;  ///< its standard uncertainty, relative
 };

@@ -210,6 +210,8 @@ std::string spoken(const Recording& recording, const Measurement& m) {
         "Implied emissivity: {:.3g} liquid{}.\n", m.emissivity->liquid,
         m.emissivity->solid ? fmt::format(", {:.3g} solid", *m.emissivity->solid) : std::string());
   if (m.budget) text += budget_text(*m.budget, a);
+  const std::string advice = would_narrow(m);
+  if (!advice.empty()) text += advice + "\n";
   if (a.only_incomplete)
     text +=
         "In no frame is the pool whole: it touches the border of the image or its front was not "

@@ -22,6 +22,24 @@ json estimate_json(const Estimate& e, double scale) {
 
 }  // namespace
 
+std::string would_narrow(const Measurement& m) {
+  if (m.reference_used || !m.budget) return {};
+  const std::string known =
+      "an emissivity that was measured, with its own uncertainty ([budget] u_emissivity)";
+  if (m.analysis.level.kind == LevelKind::temperature)
+    return "Most of the interval is the emissivity that the camera's software has used: it would "
+           "be "
+           "narrower with a recording exported as counts, in which the phase boundary can be "
+           "looked for, or with " +
+           known + ".";
+  if (m.analysis.level.kind != LevelKind::radiometry) return {};
+  return "Most of the interval is what is not known of the emissivity. It would be narrower where "
+         "the recording itself shows the phase boundary, for which the alloy's freezing heat "
+         "(--freezing-heat; MATERIAL) and a calibrated point spread (--calibration; CALIBRATION) "
+         "help, with a signal at the boundary that is known (--level; LEVEL), or with " +
+         known + ".";
+}
+
 json reference_json(const Measurement& m, const RecordingHeader& h) {
   const ReferenceSignal& r = m.reference;
   json j = {{"found", r.signature != Signature::none},
@@ -29,6 +47,8 @@ json reference_json(const Measurement& m, const RecordingHeader& h) {
             {"signature", signature_name(r.signature)},
             {"reason", m.reference_used ? json(nullptr) : json(r.reason)},
             {"emissivity_independent", m.emissivity_independent()}};
+  const std::string advice = would_narrow(m);
+  j["would_narrow"] = advice.empty() ? json(nullptr) : json(advice);
   if (r.signature != Signature::none) {
     j["signal"] = r.signal;
     j["unit"] = h.unit;

@@ -13,6 +13,10 @@ namespace meltproof::imaging {
 /// Whether S* was found and used, its value with its uncertainty, and the emissivity it implies.
 nlohmann::json reference_json(const Measurement& measurement, const RecordingHeader& header);
 
+/// What would narrow an interval that an emissivity widens, one sentence; empty where the level
+/// rests on none.
+std::string would_narrow(const Measurement& measurement);
+
 /// Corrected length and depth with their intervals, and one row for every input.
 nlohmann::json budget_json(const Budget& budget, const Analysis& analysis);
 

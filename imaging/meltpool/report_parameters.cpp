@@ -42,6 +42,8 @@ json parameters_json(const RecordingHeader& h, const Settings& s, const PixelSiz
     reference["source"] = "default";
   }
   rows.push_back(reference);
+  rows.push_back(row("freezing heat", "1", s.rules.freezing_heat, none));
+  if (s.rules.freezing_heat) rows.back()["u"] = *s.rules.freezing_heat * s.rules.u_freezing_heat;
   rows.push_back(row("level", h.unit.c_str(), s.level, none));
   rows.push_back(row("emissivity of solid metal", "1", s.emissivity, of(&Radiometry::emissivity)));
   rows.push_back(row("emissivity of liquid metal", "1", s.emissivity_liquid, h.emissivity_liquid));

@@ -55,9 +55,11 @@ InputTable reference_table(Settings& s) {
       .quantity(s.rules.freezing_heat,
                 {.name = "freezing_heat",
                  .unit = "1",
-                 .about = "heat that the alloy gives off from liquidus to solidus, over specific "
-                          "heat times liquidus, 0.19 to 0.23 for 316L; without it 0.16 to 0.48 "
-                          "are taken to be as likely",
+                 .about = "heat that the alloy gives off from liquidus to solidus (latent heat and "
+                          "what cools it through that range), over specific heat times "
+                          "liquidus, 0.19 to 0.23 for 316L; `make process MATERIAL=` takes it "
+                          "from the material's file; without it 0.16 to 0.48 are taken to be "
+                          "as likely",
                  .minimum = 0.05,
                  .maximum = 1})
       .quantity(s.rules.u_freezing_heat,
@@ -132,12 +134,15 @@ InputTable budget_table(Settings& s) {
                           "differ by some 10 K with composition",
                  .minimum = 0,
                  .maximum = 500})
-      .quantity(b.u_emissivity, {.name = "u_emissivity",
-                                 .unit = "1",
-                                 .about = "of an emissivity that the level rests on, relative; "
-                                          "published values of steel scatter by more",
-                                 .minimum = 0,
-                                 .maximum = 1})
+      .quantity(b.u_emissivity,
+                {.name = "u_emissivity",
+                 .unit = "1",
+                 .about = "of an emissivity that the level rests on, relative; say it where the "
+                          "emissivity was measured. Without it half the distance, in ln, from "
+                          "the farther end of what is published for liquid metals between 3 and "
+                          "5 um, 0.15 to 0.5: 0.35 for an emissivity of 0.3",
+                 .minimum = 0,
+                 .maximum = 1})
       .quantity(b.u_transmission, {.name = "u_transmission",
                                    .unit = "1",
                                    .about = "of the windows' transmission, relative: the paper "

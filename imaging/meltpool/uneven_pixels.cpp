@@ -22,19 +22,25 @@ UnevenPixels::UnevenPixels(const Recording& recording, const Analysis& analysis,
   width_ = recording.header().width;
   height_ = recording.header().height;
   gain_.assign(width_ * height_, 1);
-  even_ = measure();
+  even_ = measure(false).size;
 }
 
 Effect UnevenPixels::operator()(gsl_rng* random) {
   for (auto& g : gain_) g = static_cast<float>(1 + sigma_ * gsl_ran_gaussian_ziggurat(random, 1));
-  const Effect uneven = measure();
+  const Effect uneven = measure(false).size;
   return {uneven.length - even_.length, uneven.depth - even_.depth};
 }
 
-Effect UnevenPixels::measure() {
+std::optional<Effect> UnevenPixels::with_gain(double gain) {
+  std::fill(gain_.begin(), gain_.end(), static_cast<float>(gain));
+  const Mean mean = measure(true);
+  if (frames_.empty() || (mean.regions == 0 && mean.at_border > 0)) return std::nullopt;
+  return mean.size;
+}
+
+UnevenPixels::Mean UnevenPixels::measure(bool whole) {
   RegionFinder finder(width_, height_, analysis_.level.interpolation);
-  Effect sum;
-  double n = 0;
+  Mean mean;
   const auto dark = static_cast<float>(dark_);
   for (const Frame& f : frames_) {
     values_.resize(f.values.size());
@@ -46,12 +52,16 @@ Effect UnevenPixels::measure() {
     }
     const auto region = finder.largest(values_, *analysis_.level.value);
     if (!region) continue;
-    sum.length += along_ * (analysis_.along_x ? region->x : region->y).size();
-    sum.depth += across_ * (analysis_.along_x ? region->y : region->x).size();
-    n += 1;
+    if (whole && region->at_border()) {
+      ++mean.at_border;
+      continue;
+    }
+    mean.size.length += along_ * (analysis_.along_x ? region->x : region->y).size();
+    mean.size.depth += across_ * (analysis_.along_x ? region->y : region->x).size();
+    mean.regions += 1;
   }
-  if (n > 0) sum.length /= n, sum.depth /= n;
-  return sum;
+  if (mean.regions > 0) mean.size.length /= mean.regions, mean.size.depth /= mean.regions;
+  return mean;
 }
 
 }  // namespace meltproof::imaging

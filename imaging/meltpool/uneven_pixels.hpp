@@ -2,6 +2,8 @@
 // What pixels of uneven gain do to the dimensions of a pool.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <gsl/gsl_rng.h>
@@ -23,9 +25,18 @@ class UnevenPixels {
                double sigma);
   /// Draws a gain for every pixel, the same in all frames, and compares with even gains.
   Effect operator()(gsl_rng* random);
+  /// Mean length and depth, in the analysis' unit, with all gains alike: at a level of the signal
+  /// above dark that is `gain` times less. Frames whose region reaches the border are left out; a
+  /// frame without a region counts as none. @return nothing where no frame is left.
+  std::optional<Effect> with_gain(double gain);
 
  private:
-  Effect measure();
+  struct Mean {
+    Effect size;
+    double regions = 0;         ///< that the mean is over
+    std::size_t at_border = 0;  ///< left out
+  };
+  Mean measure(bool whole);
 
   const Analysis& analysis_;
   double sigma_, dark_, along_ = 1, across_ = 1;

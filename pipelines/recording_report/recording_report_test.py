@@ -17,6 +17,7 @@ ROOT = HERE.parent.parent
 BIN = Path(os.environ.get("MELTPROOF_BIN", ROOT / "build/release/bin"))
 sys.path.insert(0, str(HERE))
 import campaign  # noqa: E402
+from material_test import material  # noqa: E402
 
 SCALE = "data/scales/synthetic_across_x.h5"
 
@@ -101,6 +102,7 @@ class OneRecording(unittest.TestCase):
         rows = {row["name"]: row for row in self.summary["parameters"]}
         self.assertEqual((rows["reference temperature"]["value"], rows["reference temperature"]["source"]),
                          (1683, "given"))
+        self.assertEqual((rows["freezing heat"]["value"], rows["freezing heat"]["source"]), (0.209, "given"))
         self.assertEqual(rows["transmission of the windows"]["source"], "file")
         self.assertEqual(rows["pixel size along x"]["source"], "calibration")
         self.assertEqual(rows["scan speed"]["source"], "unknown")
@@ -108,7 +110,7 @@ class OneRecording(unittest.TestCase):
         self.assertAlmostEqual(rows["point spread, sigma"]["value"], 0.8, delta=0.02)
         self.assertLess(rows["point spread, sigma"]["u"], 0.06)  # by the scatter of single rows at SNR 20
         for words in ("given by you", "your calibration", "the recording&#39;s file", "nobody says it",
-                      "liquidus of 316L"):
+                      "liquidus of 316L", "Its freezing heat is 0.209: 274.7 kJ/kg between solidus (1633 K)"):
             self.assertIn(words, self.page)
 
     def test_the_tail_is_drawn_with_the_reference_signal(self):
@@ -120,6 +122,19 @@ class OneRecording(unittest.TestCase):
         misfit = sum(((row[1] - row[3]) / row[2]) ** 2 for row in rows) / len(rows)
         self.assertLess(misfit, 4)  # the exported model is the one that was fitted
         self.assertIn("S* is the signal of liquid metal", self.page)
+
+    def test_a_length_that_rests_on_an_emissivity_says_what_would_narrow_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            settings, output = Path(folder) / "settings.toml", Path(folder) / "out"
+            settings.write_text('reference_signal = "off"\nemissivity_liquid = 0.3\n')
+            done = process(RECORDING=str(RUNS.pool), OUTPUT=str(output), SETTINGS=str(settings))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            page = (output / "report.html").read_text()
+            for said in ("They are not independent of the emissivity", "Most of the interval is what is not known of "
+                         "the emissivity. It would be narrower", "MATERIAL", "35 % (assumed"):
+                self.assertIn(said, page)
+            self.assertIn("It would be narrower", done.stdout)
+        self.assertNotIn("It would be narrower", self.page)
 
     def test_the_page_moves_and_the_pdf_is_one(self):
         self.assertIn("The frames in turn", self.page)
@@ -133,8 +148,8 @@ class OneRecording(unittest.TestCase):
         before = {name: (self.output / name).read_bytes() for name in ("report.html", "report.pdf", "animation.png")}
         again = subprocess.run(["pipelines/python.sh", "pipelines/recording_report/recording_report.py",
                                 str(self.output), "--calibration", str(self.output / "calibration.json"), "--material",
-                                "The reference temperature is the liquidus of 316L, 1683 K (316L.toml; source: Table "
-                                "A1)."], cwd=ROOT, env={**os.environ, "SOURCE_DATE_EPOCH": "0"}, check=False)
+                                material("316L")[2]], cwd=ROOT, env={**os.environ, "SOURCE_DATE_EPOCH": "0"},
+                               check=False)
         self.assertEqual(again.returncode, 0)
         for name, content in before.items():
             self.assertEqual((self.output / name).read_bytes(), content, name)
