@@ -27,12 +27,16 @@ Steepness::Steepness(double by_log_temperature) : value_(by_log_temperature) {
   x_ = b + gsl_sf_lambert_W0(-b * std::exp(-b));
 }
 
+/// Of ln S below theta*: beyond it nothing is left of the signal, and its numbers stay finite.
+constexpr double darkest = 100;
+
 TailLawValue tail_law(const TailLaw& law, double theta, double cell) {
   const double b = law.steepness, x = law.steepness.x(), black = std::expm1(x);
   const double below = theta - law.log_signal;
   if (below > 0.5 * b || (law.ratio == 0 && law.interval == 0)) return {.log_signal = theta};
-  const double dim = black * std::exp(-below);  // exp(x / tau) - 1
-  const double liquid = x / std::log1p(dim);    // tau
+  // exp(x / tau) - 1; ahead of the beam theta falls without end, and what is so cold is dark.
+  const double dim = black * std::exp(std::min(-below, darkest));
+  const double liquid = x / std::log1p(dim);  // tau
   const double tau_theta = liquid * liquid / x * dim / (1 + dim);
   const double q = 1 - liquid;
   const double cell_q = std::max(cell * tau_theta, 1e-9);
