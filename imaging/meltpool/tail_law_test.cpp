@@ -48,6 +48,18 @@ TEST(TailLaw, KnowsTheWavelengthOfItsSteepness) {
   EXPECT_NEAR(Steepness(0.5).x(), 0.04, 1e-3);
 }
 
+// Ahead of the beam the field falls without end.
+TEST(TailLaw, StaysFiniteHoweverColdTheMetalIs) {
+  const TailLaw law{.log_signal = star, .ratio = 0.1, .interval = 0.6};
+  for (const double below : {10.0, 300.0, 1e4, 1e9}) {
+    const TailLawValue v = tail_law(law, star - below, 2);
+    for (const double number :
+         {v.log_signal, v.by_theta, v.by_theta_star, v.by_ratio, v.by_interval})
+      EXPECT_TRUE(std::isfinite(number)) << below;
+    EXPECT_LT(v.log_signal, star - 2) << below;
+  }
+}
+
 TEST(TailLaw, HasTheDerivativesOfItsValue) {
   // That the cell's own width changes with theta is left out of the derivatives: a hundredth of it.
   constexpr double d = 1e-6, cell = 0.01;
