@@ -38,6 +38,42 @@ TEST(AssumedEmissivity, TheIntervalsHoldTheTruth) {
   EXPECT_GE(tally.depth_covered, 9);
 }
 
+// A front that is placed less well than is asked still is the front: an assumed emissivity knows
+// the length less well. Where it knows it better, or the front is demanded, the front gives way.
+TEST(AssumedEmissivity, GivesWayToAVagueFront) {
+  Scenes scenes(770204);
+  PassageSettings s = scenes.next(0);
+  s.solidification.latent_heat = 372;
+  s.source.absorbed_power = 75;
+  s.source.reference_temperature = 1683;
+  s.camera.emissivity_liquid = s.camera.emissivity_solid = 0.45;
+  set_signal_to_noise(s, 20);
+  const FilmedPassage film = film_passage(s);
+  const Recording recording = with_assumed_emissivity(film, s, 0.3);
+  MeasurementRequest r = request_for(s);
+  r.budget.u_point_spread = 0.04;
+  r.rules.uncertainty = 0.002;
+  const Measurement vague = measure_recording(recording, r);
+  ASSERT_TRUE(vague.reference_used) << vague.reference.reason;
+  EXPECT_NE(vague.vague.find("0.2 % are allowed"), std::string::npos) << vague.vague;
+  EXPECT_NE(caution(vague).find("known even less"), std::string::npos);
+  EXPECT_LE(vague.budget->length.low, film.length);
+  EXPECT_GE(vague.budget->length.high, film.length);
+  r.rules.uncertainty = 0.05;
+  const Measurement sure = measure_recording(recording, r);
+  EXPECT_TRUE(sure.reference_used);
+  EXPECT_EQ(sure.budget->length.value, vague.budget->length.value);
+  EXPECT_EQ(caution(sure), "");
+  r.rules.uncertainty = 0.002;
+  r.budget.u_emissivity = r.budget.u_transmission = 1e-4;
+  const Measurement known = measure_recording(recording, r);
+  EXPECT_FALSE(known.reference_used);
+  EXPECT_EQ(caution(known), "");
+  EXPECT_NE(known.reference.reason.find("0.2 % are allowed"), std::string::npos);
+  r.search = ReferenceSearch::required;
+  EXPECT_FALSE(measure_recording(recording, r).analysis.found);
+}
+
 // With 10 %, as the budget took every emissivity before, half of such intervals miss.
 TEST(AssumedEmissivity, AStatedUncertaintyIsTaken) {
   Scenes scenes(770202);

@@ -52,11 +52,15 @@ double steepness_of(const Radiometry& r, double reference_temperature) {
          (2 * step);
 }
 
+/// Half of the length's 95 % interval over the length.
+double half_width(const Budget& budget) {
+  return 0.5 * (budget.length.high - budget.length.low) / budget.length.value;
+}
+
 /// Why a length by the reference signal is not given, or an empty text.
 std::string too_uncertain(const Measurement& m, const ReferenceRules& rules) {
   if (!m.budget) return {};
-  const Estimate& length = m.budget->length;
-  const double half = 0.5 * (length.high - length.low) / length.value;
+  const double half = half_width(*m.budget);
   if (half <= rules.uncertainty) return {};
   return fmt::format(
       "the recording shows a front, but places it only so that the length is uncertain by {:.1f} % "
@@ -167,14 +171,24 @@ Measurement measure_recording(const Recording& recording, const MeasurementReque
   };
   with_budget();
   if (m.reference_used) {
-    const std::string vague = too_uncertain(m, request.rules);
-    if (!vague.empty()) {
+    m.vague = too_uncertain(m, request.rules);
+    if (!m.vague.empty()) {
+      Measurement by_front = std::move(m);
+      m = {};
+      m.reference = by_front.reference;
       m.reference.signature = Signature::none;
-      m.reference.reason = vague;
-      m.reference_used = false;
-      m.budget.reset();
+      m.reference.reason = by_front.vague;
+      m.emissivity = by_front.emissivity;
       m.analysis = std::move(told_level);
-      if (request.search != ReferenceSearch::required) with_budget();
+      if (request.search == ReferenceSearch::automatic) {
+        with_budget();
+        // A front that is placed vaguely still is the front: it gives way only to what is known
+        // better. What a mere contrast outlines is not the pool, so its interval counts for
+        // nothing.
+        if (!m.budget || m.analysis.level.kind == LevelKind::contrast ||
+            half_width(*m.budget) > half_width(*by_front.budget))
+          m = std::move(by_front);
+      }
     }
   }
   if (request.search == ReferenceSearch::required && !m.reference_used) {

@@ -12,8 +12,10 @@ namespace meltproof::imaging {
 
 /// Whether the signal of the phase boundary is looked for in the recording.
 enum class ReferenceSearch {
-  automatic,  ///< and used where it is found, unless a level or an emissivity was given
-  required,   ///< and there is no result without it
+  /// and used where it is found, unless a level or an emissivity was given; where it is vague, only
+  /// if the length would be less well known without it
+  automatic,
+  required,  ///< and there is no result without it
   off
 };
 /// "auto", "find" or "off". @throws InputError otherwise.
@@ -35,6 +37,9 @@ struct Measurement {
   Analysis analysis;
   ReferenceSignal reference;  ///< with a reason where none was found, used or looked for
   bool reference_used = false;
+  /// Where S* is used although it places the front less well than ReferenceRules::uncertainty
+  /// allows, because what there is otherwise knows the length even less: how well it does.
+  std::string vague;
   std::optional<ImpliedEmissivity> emissivity;  ///< where S* was found and the radiometry is known
   std::optional<Budget> budget;                 ///< where there is a pool
   /// Whether the outline depends on no emissivity and no transmission.

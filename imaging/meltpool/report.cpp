@@ -202,7 +202,7 @@ std::string spoken(const Recording& recording, const Measurement& m) {
                         a.length.n, a.length.deviation * s, u);
   text += fmt::format(".\nLevel {:.6g} {}: {}.\n", *a.level.value, h.unit, a.level.how);
   text += m.reference_used
-              ? "This level is independent of emissivity and transmission.\n"
+              ? "This level is independent of emissivity and transmission.\n" + caution(m)
               : "Reference signal in the recording itself: none used, because " +
                     m.reference.reason + ".\nThis level is not independent of the emissivity.\n";
   if (m.emissivity && m.reference_used)

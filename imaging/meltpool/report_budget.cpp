@@ -40,12 +40,20 @@ std::string would_narrow(const Measurement& m) {
          known + ".";
 }
 
+std::string caution(const Measurement& m) {
+  if (m.vague.empty()) return {};
+  return "Caution: " + m.vague +
+         ". It is used all the same, because without it the length would be "
+         "known even less.\n";
+}
+
 json reference_json(const Measurement& m, const RecordingHeader& h) {
   const ReferenceSignal& r = m.reference;
   json j = {{"found", r.signature != Signature::none},
             {"used", m.reference_used},
             {"signature", signature_name(r.signature)},
             {"reason", m.reference_used ? json(nullptr) : json(r.reason)},
+            {"vague", m.vague.empty() ? json(nullptr) : json(m.vague)},
             {"emissivity_independent", m.emissivity_independent()}};
   const std::string advice = would_narrow(m);
   j["would_narrow"] = advice.empty() ? json(nullptr) : json(advice);

@@ -17,6 +17,9 @@ nlohmann::json reference_json(const Measurement& measurement, const RecordingHea
 /// rests on none.
 std::string would_narrow(const Measurement& measurement);
 
+/// A line that warns of a reference signal that is used although it is vague, or an empty text.
+std::string caution(const Measurement& measurement);
+
 /// Corrected length and depth with their intervals, and one row for every input.
 nlohmann::json budget_json(const Budget& budget, const Analysis& analysis);
 
