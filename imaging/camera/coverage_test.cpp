@@ -71,16 +71,21 @@ Tally with_the_reference_signal_found(std::uint64_t seed, double uncertainty, bo
   return tally;
 }
 
+/// Depths within a pixel, and 95 % intervals that hold what they say.
+void expect_intervals(const Tally& tally) {
+  EXPECT_EQ(tally.depth_close, tally.n);
+  EXPECT_GE(tally.depth_covered, 0.90 * tally.n);
+  EXPECT_GE(tally.covered, 0.90 * tally.n);
+  EXPECT_LE(tally.covered, 0.99 * tally.n);
+}
+
 // A length that must be within 2 %, come what may: three of its standard deviations are asked to
 // be, or the sentence why not.
 TEST(TwoHundredScenes, WithTheReferenceSignalFoundSoWellThatAllAreWithinTwoPercent) {
   const Tally tally = with_the_reference_signal_found(20260102, 0.02 * 2 / 3, false);
   tally.say("reference signal found, three standard deviations within 2 %");
   EXPECT_EQ(tally.close, tally.n);
-  EXPECT_EQ(tally.depth_close, tally.n);
-  EXPECT_GE(tally.depth_covered, 0.90 * tally.n);
-  EXPECT_GE(tally.covered, 0.90 * tally.n);
-  EXPECT_LE(tally.covered, 0.99 * tally.n);
+  expect_intervals(tally);
   EXPECT_GE(tally.n, 100);
 }
 
@@ -89,10 +94,7 @@ TEST(TwoHundredScenes, WithTheReferenceSignalFoundAndTheAlloyKnown) {
   const Tally tally = with_the_reference_signal_found(20260103, 0.02, true);
   tally.say("reference signal found, alloy known, 95 % interval within 2 %");
   EXPECT_GE(tally.close, 0.95 * tally.n);
-  EXPECT_EQ(tally.depth_close, tally.n);
-  EXPECT_GE(tally.depth_covered, 0.90 * tally.n);
-  EXPECT_GE(tally.covered, 0.90 * tally.n);
-  EXPECT_LE(tally.covered, 0.99 * tally.n);
+  expect_intervals(tally);
   EXPECT_GE(tally.n, 140);
 }
 

@@ -17,9 +17,10 @@ class Steepness {
   Steepness(double by_log_temperature);  // NOLINT: it is that number
   operator double() const { return value_; }
   double x() const { return x_; }
+  double exp_x_less_1() const { return exp_x_less_1_; }
 
  private:
-  double value_, x_;
+  double value_, x_, exp_x_less_1_;
 };
 
 /// Freezing metal as a camera sees it. theta is ln(S - dark) that liquid metal of the same enthalpy
