@@ -86,9 +86,16 @@ PointSpread point_spread_of(const Settings& settings, const RecordingHeader& hea
 
 namespace {
 
-/// Mean of up to 200 frames.
-std::vector<double> mean_frame(const std::filesystem::path& path) {
+/// Mean of up to 200 frames of a uniform reference.
+/// @throws InputError if its frames are not of the recording's size.
+std::vector<double> mean_frame(const std::filesystem::path& path, const RecordingHeader& of) {
   const Recording reference = open_recording(path);
+  const RecordingHeader& h = reference.header();
+  if (h.width != of.width || h.height != of.height)
+    throw InputError(fmt::format(
+        "{}: the reference has {} x {} pixels, the recording {} x {} ({}); record the uniform "
+        "references in the same window of the camera.",
+        path.string(), h.width, h.height, of.width, of.height, of.path.string()));
   const std::size_t n = std::min<std::size_t>(reference.header().frames, 200);
   std::vector<double> mean(reference.header().width * reference.header().height, 0);
   for (std::size_t k = 0; k < n; ++k) {
@@ -108,8 +115,17 @@ Recording made_uniform(const Settings& settings, Recording recording) {
         fmt::format("{}: pixels can be made uniform in counts only, but the file "
                     "holds {}; leave uniform_cold and uniform_hot out.",
                     header.path.string(), quantity_name(header.quantity)));
-  const Uniformity uniformity =
-      two_point(mean_frame(settings.uniform_cold), mean_frame(settings.uniform_hot));
+  const std::vector<double> cold = mean_frame(settings.uniform_cold, header),
+                            hot = mean_frame(settings.uniform_hot, header);
+  const Uniformity uniformity = [&] {
+    try {
+      return two_point(cold, hot);
+    } catch (const InputError& problem) {
+      throw InputError(fmt::format("uniform_cold = {}, uniform_hot = {}: {}",
+                                   settings.uniform_cold.string(), settings.uniform_hot.string(),
+                                   problem.what()));
+    }
+  }();
   header.notes.push_back(
       fmt::format("Offsets and gains of the pixels are corrected by two references: gains differed "
                   "by {:.2g} %, "

@@ -109,14 +109,17 @@ TEST_F(Uniform, ASaturatedPixelStaysMarkedWhateverItsGain) {
 TEST_F(Uniform, WhatIsWrongWithReferencesIsSaidInASentence) {
   expect_refusal(command("uneven.ptw", "uniform_cold = 'cold.ptw'\n"), "belong together");
   expect_refusal(command("uneven.ptw", "uniform_cold = 'hot.ptw'\nuniform_hot = 'cold.ptw'\n"),
-                 "not brighter");
+                 "cold.ptw: The hot reference is not brighter");
   expect_refusal(command("uneven.ptw", "uniform_cold = 'gone.ptw'\nuniform_hot = 'hot.ptw'\n"),
                  "gone.ptw");
   file("small.ptw", synthetic::ptw({synthetic::scene(9, 6, 0)}));
   expect_refusal(command("uneven.ptw", "uniform_cold = 'small.ptw'\nuniform_hot = 'hot.ptw'\n"),
-                 "54 pixels");
+                 "small.ptw: the reference has 9 x 6 pixels, the recording 80 x 40");
   file("seven.ptw", synthetic::ptw({synthetic::scene(7, 6, 0)}));
-  expect_refusal(command("seven.ptw", both), "recording 42");
+  expect_refusal(command("seven.ptw", both), "cold.ptw: the reference has 80 x 40 pixels");
+  // As many pixels, but of another window.
+  file("turned.ptw", synthetic::ptw({synthetic::scene(height, width, 0)}));
+  expect_refusal(command("turned.ptw", both), "the recording 40 x 80");
   file("notes.txt", "no recording\n");
   expect_refusal(command("uneven.ptw", "uniform_cold = 'notes.txt'\nuniform_hot = 'hot.ptw'\n"),
                  "notes.txt");
