@@ -28,8 +28,8 @@ struct ReferenceRules {
   double misfit = 4;             ///< largest chi-squared over degrees of freedom
   double u_front = 0.75;         ///< px, largest standard uncertainty of the front's place
   /// Largest half width of the length's 95 % interval, over the length. A length that is known less
-  /// well is not given as independent of the emissivity. Of 200 scenes 177 are given with 3 %, all
-  /// within 3 %, and 132 with 1.33 %, all within 2 % (camera/coverage_test.cpp).
+  /// well is not given as independent of the emissivity. Of 200 scenes 176 are given with 3 %, all
+  /// within 3 %, and 124 with 1.33 %, all within 2 % (camera/coverage_test.cpp).
   double uncertainty = 0.03;
   /// Heat that the alloy gives off from liquidus to solidus, over specific heat times liquidus:
   /// 0.19 to 0.23 for 316L (274.7 kJ/kg; 847 to 714 J/(kg K), 1683 K). It holds the latent heat
