@@ -57,6 +57,7 @@ TEST(AssumedEmissivity, GivesWayToAVagueFront) {
   ASSERT_TRUE(vague.reference_used) << vague.reference.reason;
   EXPECT_NE(vague.vague.find("0.2 % are allowed"), std::string::npos) << vague.vague;
   EXPECT_NE(caution(vague).find("known even less"), std::string::npos);
+  EXPECT_EQ(reference_json(vague, recording.header())["vague"], vague.vague);
   EXPECT_LE(vague.budget->length.low, film.length);
   EXPECT_GE(vague.budget->length.high, film.length);
   r.rules.uncertainty = 0.05;
@@ -64,6 +65,7 @@ TEST(AssumedEmissivity, GivesWayToAVagueFront) {
   EXPECT_TRUE(sure.reference_used);
   EXPECT_EQ(sure.budget->length.value, vague.budget->length.value);
   EXPECT_EQ(caution(sure), "");
+  EXPECT_TRUE(reference_json(sure, recording.header())["vague"].is_null());
   r.rules.uncertainty = 0.002;
   r.budget.u_emissivity = r.budget.u_transmission = 1e-4;
   const Measurement known = measure_recording(recording, r);

@@ -31,9 +31,9 @@ constexpr double u_ends = 0.055;
 constexpr double u_ends_step = 0.02, u_side = 0.06;
 /// Beside a shoulder the front comes out 0.03 px too far in (16 synthetic passages without noise,
 /// freezing heat and point spread known): a known effect, corrected (GUM 3.2.4). The leading edge
-/// is off by -0.04 px with a source that is cut off at 3100 K and by +0.03 with one at 2600 K, so
-/// that belongs to the synthetic source: it is not corrected but held as a doubt, beside a scatter
-/// of 0.05 beyond that of the draws.
+/// does by 0.04 px, for a reason that is not known (with sources cut off at 2800 to 4000 K a length
+/// is short by 0.05 to 0.08 px in all). Rosenthal's leading edge is not that of a beam, so this is
+/// not corrected but held as a doubt, beside a scatter of 0.05 beyond that of the draws.
 constexpr double shortening = 0.03, u_ends_shoulder = 0.065;
 
 /// Half the width of the middle 68.3 %: the standard deviation of a normal distribution, and finite

@@ -136,6 +136,17 @@ class OneRecording(unittest.TestCase):
             self.assertIn("It would be narrower", done.stdout)
         self.assertNotIn("It would be narrower", self.page)
 
+    def test_a_front_that_is_placed_vaguely_is_used_with_a_caution(self):
+        with tempfile.TemporaryDirectory() as folder:
+            settings, output = Path(folder) / "settings.toml", Path(folder) / "out"
+            settings.write_text("[reference]\nuncertainty = 0.001\n")
+            done = process(RECORDING=str(RUNS.pool), OUTPUT=str(output), SETTINGS=str(settings))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            page = (output / "report.html").read_text()
+        self.assertIn("<strong>Caution:</strong> the recording shows a front, but places it only so", page)
+        self.assertIn("Caution: the recording shows a front", done.stdout)
+        self.assertNotIn("Caution", self.page)
+
     def test_the_page_moves_and_the_pdf_is_one(self):
         self.assertIn("The frames in turn", self.page)
         self.assertEqual((self.output / "report.pdf").read_bytes()[:5], b"%PDF-")
