@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "imaging/radiometry/radiometry.hpp"
+
 namespace meltproof::imaging {
 namespace {
 
@@ -46,6 +48,20 @@ TEST(TailLaw, KnowsTheWavelengthOfItsSteepness) {
   }
   EXPECT_NEAR(Steepness(20).x(), 20, 1e-6);
   EXPECT_NEAR(Steepness(0.5).x(), 0.04, 1e-3);
+}
+
+// Heat that is given off lifts frozen metal to where the band's own radiance has it, to 0.01;
+// Wien's form of the law would be 0.045 off at 1350 K.
+TEST(TailLaw, FollowsTheRadianceOfACameraSBand) {
+  const Radiometry band;  // 3 to 5 um
+  constexpr double liquidus = 1683;
+  const auto log_signal = [&](double t) { return std::log(signal(band, t) - band.dark); };
+  const double b = liquidus * (log_signal(liquidus + 1) - log_signal(liquidus - 1)) / 2;
+  const TailLaw law{.log_signal = log_signal(liquidus), .interval = 0.25 * b, .steepness = b};
+  const double released = (1 - TailLaw::sensible) * 0.25 * liquidus;
+  for (const double t : {1350.0, 1450.0, 1550.0})
+    EXPECT_NEAR(tail_law(law, log_signal(t - released), 1e-6).log_signal, log_signal(t), 0.015)
+        << t;
 }
 
 // Ahead of the beam the field falls without end.
