@@ -69,6 +69,10 @@ struct Tally {
     worst = std::max(worst, std::abs(error));
   }
   void say(const char* what) const {
+    if (n == 0) {
+      std::cout << what << ": none measured, " << none << " refused\n";
+      return;
+    }
     std::cout << what << ": " << n << " scenes measured, " << none
               << " refused; length within 2 % in " << 100.0 * close / n << " %, mean error "
               << 100 * sum / n << " %, rms " << 100 * std::sqrt(squares / n) << " %, worst "
