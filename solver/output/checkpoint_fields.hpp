@@ -52,8 +52,8 @@ void each_field(const Visit& visit) {
       "mobile", "1", Of::everybody, [](EngineState & s) -> auto& { return s.mobile; },
       [](const StateView& v, std::uint32_t i) { return v.mobile[i]; });
   visit(
-      "fast", "1", Of::everybody, [](EngineState & s) -> auto& { return s.fast; },
-      [](const StateView& v, std::uint32_t i) { return v.fast[i]; });
+      "pace", "1", Of::everybody, [](EngineState & s) -> auto& { return s.pace; },
+      [](const StateView& v, std::uint32_t i) { return v.pace[i]; });
   visit(
       "slow_power", "W m-3", Of::everybody, [](EngineState & s) -> auto& { return s.slow_power; },
       [](const StateView& v, std::uint32_t i) { return v.slow_power[i]; });

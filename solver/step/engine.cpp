@@ -12,6 +12,17 @@
 namespace meltproof::solver {
 namespace {
 
+/// A third more than the largest k/(rho c_p) of the base alloy below its boiling point, m2 s-1:
+/// melt with a few per cent of additive stays below it, unmixed grains of a metal that conducts
+/// better do not.
+double best_of_base(const Mixture& mixture) {
+  double best = 0;
+  for (double t = 298; t < mixture.boiling(0); ++t) {
+    best = std::max(best, mixture.conductivity(t, 0) / mixture.smallest_specific_heat_near(t, 0));
+  }
+  return 4.0 / 3 * best / mixture.density(0);
+}
+
 Particles sorted(Particles particles, double smoothing_ratio) {
   sort_in_space(particles, 3 * smoothing_ratio * particles.spacing);
   return particles;
@@ -66,8 +77,9 @@ void Engine::prepare() {
   for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_}) {
     field->assign(particles_.size(), 0.0);
   }
+  best_of_base_ = best_of_base(mixture_);
   slow_power_.resize(particles_.size(), 0.0);
-  fast_.resize(particles_.size(), 0);
+  pace_.resize(particles_.size(), 0);
   if (model_.flow) {
     flow_.emplace(*model_.flow, kernel_, particles_.spacing, particles_.dimensions, *halo_);
   }
@@ -153,7 +165,7 @@ void Engine::refresh(std::size_t i) {
   diffusivity_[i] = mixes ? liquid * diffusivity_law_(temperature) : 0;
   heat_records_[i].temperature = temperature;
   heat_records_[i].conductivity = conductivity;
-  heat_records_[i].fast = fast_[i];
+  heat_records_[i].pace = pace_[i];
   heat_records_[i].awake = std::abs(temperature - start_temperature_) > model_.sleep_below ? 1 : 0;
 }
 
@@ -165,7 +177,7 @@ void Engine::refresh_ghosts() {
         ghost.sign * particles_.temperature[ghost.source] + ghost.offset;
     heat_records_[n + g].conductivity = heat_records_[ghost.source].conductivity;
     heat_records_[n + g].awake = heat_records_[ghost.source].awake;
-    heat_records_[n + g].fast = heat_records_[ghost.source].fast;
+    heat_records_[n + g].pace = heat_records_[ghost.source].pace;
   });
 }
 

@@ -148,9 +148,6 @@ class Engine {
   void check_numbers() const;
   void fill_species_records(const std::vector<double>& concentration);
   void advance_species(double dt);
-  void exchange_heat(double dt, double longest);
-  void open_round(double longest);
-  void find_boundary();
   void apply(double dt);
   void place_records();
   void place_moving_records();
@@ -161,8 +158,14 @@ class Engine {
     double size = 0, end = 0;  // s
     double round = 0;          // s, longest one of heat steps
     int flow_steps = 1;
+    int heat_substeps = 0;  // zero: nobody takes any
     StepLimits limits;
   };
+  void exchange_heat(const Step& step);
+  bool may_open_rounds() const;
+  void open_round(const Step& step);
+  void find_boundary();
+  void exchange_in_substeps(double dt, int parts);
   Step choose_step(double until, double surface_rate) const;
   /// What crosses its liquidus within a step.
   struct Crossing {
@@ -229,9 +232,11 @@ class Engine {
   SpeciesRecords species_records_;
   std::vector<double> thermal_diffusivity_, diffusivity_, conducted_, source_;
   std::vector<std::uint32_t> liquid_;
-  // Of a round of steps, see exchange_heat(). Who conducts in this step; slow ones beside those.
-  std::vector<std::uint32_t> heat_active_, boundary_;
-  std::vector<std::uint8_t> fast_;
+  // Of a round of steps, see exchange_heat(). Who conducts in this step; slow ones beside those;
+  // who conducts in substeps; others beside those.
+  std::vector<std::uint32_t> heat_active_, boundary_, substeppers_, beside_substeppers_;
+  std::vector<std::uint8_t> pace_;
+  double best_of_base_ = 0;         // m2 s-1: what conducts better may take substeps
   std::vector<double> slow_power_;  // W m-3, that slow ones exchange among themselves
   double round_time_ = 0;           // s, so far
   std::uint64_t heat_evaluations_ = 0;

@@ -43,7 +43,7 @@ Engine::Moved Engine::move_between_ranks(const std::vector<std::uint8_t>& before
     }
     particles_.home[i] = Home::nowhere;
     particles_.phase[i] = Phase::solid;
-    mobile_[i] = fast_[i] = 0;
+    mobile_[i] = pace_[i] = 0;
     slow_power_[i] = 0;
     // A diffusivity that stayed behind would hold the time step.
     thermal_diffusivity_[i] = diffusivity_[i] = 0;

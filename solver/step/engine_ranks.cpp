@@ -102,7 +102,7 @@ std::vector<std::uint32_t> Engine::divide(const std::vector<Vector>& at) {
   particles_.each_array([&](auto& values) { select(values, kept); });
   // What an engine that goes on from a state knows beside.
   select_if_there(mobile_, kept);
-  select_if_there(fast_, kept);
+  select_if_there(pace_, kept);
   select_if_there(slow_power_, kept);
   settled_ = particles_.size();
   add_free_slots();
@@ -130,7 +130,7 @@ void Engine::fit_fields() {
   }
   mobile_.resize(n, 0);
   slow_power_.resize(n, 0.0);
-  fast_.resize(n, 0);
+  pace_.resize(n, 0);
 }
 
 /// Who keeps copies of whom, by places alone. @param at per particle; free entries may be missing.
@@ -180,7 +180,7 @@ Traveller Engine::pack(std::uint32_t i) const {
   }
   t.rank = halo_->ranks().rank();
   t.mobile = mobile_[i];
-  t.fast = fast_[i];
+  t.pace = pace_[i];
   t.slow_power = slow_power_[i];
   return t;
 }
@@ -189,7 +189,7 @@ void Engine::unpack(std::uint32_t i, const Traveller& t, Home home) {
   t.write(particles_, i);
   particles_.home[i] = home;
   mobile_[i] = t.mobile;
-  fast_[i] = t.fast;
+  pace_[i] = t.pace;
   slow_power_[i] = t.slow_power;
 }
 

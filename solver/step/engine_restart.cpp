@@ -20,7 +20,7 @@ void write_particles(EngineState& state, const std::vector<Traveller>& all) {
     p.home[i] = Home::here;
     state.listed_at.push_back(t.listed_at);
     state.mobile.push_back(t.mobile);
-    state.fast.push_back(t.fast);
+    state.pace.push_back(t.pace);
     state.slow_power.push_back(t.slow_power);
     if (t.phase == Phase::liquid) {
       remember(state.flow, t.flow);
@@ -39,7 +39,7 @@ EngineState Engine::state(bool everywhere) const {
       state.listed_at[movers_[k]] = built_at_[k];
     }
     state.mobile = mobile_;
-    state.fast = fast_;
+    state.pace = pace_;
     state.slow_power = slow_power_;
     if (flow_) {
       state.flow = flow_->memory();
@@ -73,7 +73,7 @@ EngineState Engine::state_numbers() const {
 }
 
 StateView Engine::state_view() const {
-  StateView view{particles_, {}, mobile_, fast_, slow_power_, {}, {}};
+  StateView view{particles_, {}, mobile_, pace_, slow_power_, {}, {}};
   for (std::uint32_t i = 0; i < particles_.size(); ++i) {
     if (particles_.home[i] == Home::here) {
       view.own.push_back(i);
@@ -106,11 +106,11 @@ void Engine::take_part(EngineState& state) {
   }
   decomposition_.balance(state.listed_at, costs);
   state.mobile = std::move(mobile_);
-  state.fast = std::move(fast_);
+  state.pace = std::move(pace_);
   state.slow_power = std::move(slow_power_);
   const std::vector<Traveller> all =
       share_out(state, particles_, ranks(), decomposition_, copy_reach());
-  for (auto* flags : {&mobile_, &fast_}) {
+  for (auto* flags : {&mobile_, &pace_}) {
     flags->assign(all.size(), 0);
   }
   slow_power_.assign(all.size(), 0);
@@ -147,7 +147,7 @@ Engine::Engine(EngineState state, Mixture mixture, Diffusivity diffusivity, cons
       halo_(std::make_unique<Halo>(ranks)),
       decomposition_(ranks),
       neighbours_(kernel_.support(), model.flow ? model.flow->skin * particles_.spacing : 0),
-      fast_(std::move(state.fast)),
+      pace_(std::move(state.pace)),
       slow_power_(std::move(state.slow_power)),
       round_time_(state.round_time),
       round_open_(state.round_time > 0),

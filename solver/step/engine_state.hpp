@@ -30,7 +30,7 @@ struct EnergyLedger {
 struct StateView {
   const Particles& particles;
   std::vector<std::uint32_t> own;  ///< entries of the particles that this rank computes
-  const std::vector<std::uint8_t>&mobile, &fast;  ///< as in EngineState
+  const std::vector<std::uint8_t>&mobile, &pace;  ///< as in EngineState
   const std::vector<double>& slow_power;          ///< likewise
   std::function<Vector(std::uint32_t)> listed_at;
   std::function<FlowParticle(std::uint32_t)> flow;  ///< of a liquid one; none without flow
@@ -44,7 +44,7 @@ struct EngineState {
   std::vector<Vector> listed_at;     ///< m, places of the particles when the lists were made
   std::vector<std::uint8_t> mobile;  ///< 1 for those that counted as moving then
   std::vector<double> slow_power;    ///< W m-3, of the round of heat steps under way
-  std::vector<std::uint8_t> fast;    ///< 1 for those that take every step of it
+  std::vector<std::uint8_t> pace;    ///< how often each exchanges heat in it, see namespace pace
   double round_time = 0;             ///< s, so far; zero: none is under way
   FlowMemory flow;  ///< of the last evaluation of the forces, of each liquid particle in the order
                     ///< of `particles`; empty without flow

@@ -26,13 +26,31 @@ constexpr double round_over_limit = 2;
 /// The step by all criteria, where it ends, and into how many steps of the flow it falls.
 Engine::Step Engine::choose_step(double until, double surface_rate) const {
   const std::size_t n = particles_.size();
-  // Of all ranks in one go: thermal and species diffusivity, rate of the surface, and of the melt
-  // whether there is any, speed, kinematic viscosity, surface tension, least density.
-  enum : std::size_t { thermal, species, surface, melt, speed, viscosity, tension, density, all };
+  // Of all ranks in one go: thermal diffusivity of what may take substeps and of what may not,
+  // that of species, rate of the surface, and of the melt whether there is any, speed, kinematic
+  // viscosity, surface tension, least density.
+  enum : std::size_t {
+    best,
+    thermal,
+    species,
+    surface,
+    melt,
+    speed,
+    viscosity,
+    tension,
+    density,
+    all
+  };
   std::array<double, all> extreme{};
   extreme[surface] = surface_rate;
   if (model_.conduction) {
-    extreme[thermal] = block_max(n, 0.0, [&](std::size_t i) { return thermal_diffusivity_[i]; });
+    const auto apart = [&](std::size_t i) {
+      return round_open_ ? pace_[i] > pace::every_step : thermal_diffusivity_[i] > best_of_base_;
+    };
+    extreme[thermal] =
+        block_max(n, 0.0, [&](std::size_t i) { return apart(i) ? 0.0 : thermal_diffusivity_[i]; });
+    extreme[best] =
+        block_max(n, 0.0, [&](std::size_t i) { return apart(i) ? thermal_diffusivity_[i] : 0.0; });
   }
   if (model_.species) {
     extreme[species] = block_max(n, 0.0, [&](std::size_t i) { return diffusivity_[i]; });
@@ -53,7 +71,6 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
   StepExtremes extremes;
   extremes.smoothing_length = kernel_.smoothing_length;
   extremes.surface_rate = extreme[surface];
-  extremes.thermal_diffusivity = extreme[thermal];
   extremes.species_diffusivity = extreme[species];
   Step step;
   step.limits = step_limits(extremes);
@@ -79,6 +96,23 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
     step.limits.capillary = flow_limits.capillary;
     step.limits.gravity = flow_limits.gravity;
   }
+  const auto thermal_limit = [&](double diffusivity) {
+    StepExtremes heat;
+    heat.smoothing_length = kernel_.smoothing_length;
+    heat.thermal_diffusivity = diffusivity;
+    return step_limits(heat).thermal;
+  };
+  const double limit_of_best = thermal_limit(extreme[best]);
+  step.limits.thermal = thermal_limit(extreme[thermal]);
+  // Substeps are for where those that conduct best would hold the step back. Within a round nobody
+  // changes pace.
+  const bool substeps =
+      extreme[best] > 0 &&
+      (round_open_ || (may_open_rounds() && extreme[melt] > 0 && limit_of_best < dt));
+  if (!substeps) {
+    step.limits.thermal = std::min(step.limits.thermal, limit_of_best);
+  }
+  dt = std::min(dt, step.limits.thermal);
   if (!std::isfinite(dt)) {
     dt = until - time_;
   }
@@ -107,6 +141,10 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
   }
   step.size = dt;
   step.flow_steps = std::max(1, static_cast<int>(std::ceil(dt / flow_limit)));
+  if (substeps) {
+    step.heat_substeps =
+        std::max(1, static_cast<int>(std::ceil(dt / (model_.step_factor * limit_of_best))));
+  }
   return step;
 }
 
@@ -119,7 +157,7 @@ void Engine::apply(double dt) {
         (conducted_[i] == 0 && source_[i] == 0 && diffusivity_[i] == 0)) {
       return;
     }
-    const bool whole_round = round_closes_ && fast_[i] == 0;
+    const bool whole_round = round_closes_ && pace_[i] == 0;
     Crossing c{.particle = static_cast<std::uint32_t>(i),
                .old_enthalpy = particles_.enthalpy[i],
                .old_temperature = particles_.temperature[i],
@@ -172,7 +210,7 @@ double Engine::step(double until) {
   }
   watch.lap(times_.surface);
   if (model_.conduction) {
-    exchange_heat(dt, step.round);
+    exchange_heat(step);
   }
   watch.lap(times_.heat);
   if (model_.species) {

@@ -48,7 +48,7 @@ Traveller traveller(const EngineState& state, const Particles& p, std::size_t i,
   t.read(p, i);
   t.listed_at = state.listed_at[i];
   t.mobile = state.mobile[i];
-  t.fast = state.fast[i];
+  t.pace = state.pace[i];
   t.slow_power = state.slow_power[i];
   if (p.phase[i] == Phase::liquid && !state.flow.area.empty()) {
     const FlowMemory& m = state.flow;
@@ -91,7 +91,7 @@ EngineState& in_order(EngineState& state) {
   p.each_array([&](auto& values) { permute(values, order); });
   permute(state.listed_at, order);
   permute(state.mobile, order);
-  permute(state.fast, order);
+  permute(state.pace, order);
   permute(state.slow_power, order);
   each_array(state.flow, [&](auto& values) { permute(values, liquid); });
   return state;

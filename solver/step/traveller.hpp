@@ -21,7 +21,7 @@ struct alignas(8) Traveller {
   Origin origin;
   std::int32_t rank;  ///< that sent it
   Phase phase;
-  std::uint8_t melted, mobile, fast;
+  std::uint8_t melted, mobile, pace;
 
   /// From entry i of the arrays.
   void read(const Particles& p, std::size_t i) {

@@ -149,14 +149,36 @@ void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& ne
     for (std::size_t k = 0; k < list.size(); k += lane_count) {
       const std::uint32_t* j = &list[k];
       const Lane exchanged = exchange(own, all, j, kernel);
-      const Lane other = gather(all, j, &HeatRecord::fast);
-      fast += where_positive(other, exchanged, Lane(0.0));
+      const Lane other = gather(all, j, &HeatRecord::pace);
+      fast += where_positive(other - 1.5, Lane(0.0), where_positive(other, exchanged, Lane(0.0)));
       slow += where_positive(other, Lane(0.0), exchanged);
     }
     from_fast[i] = sum_lanes(fast);
     if (from_slow != nullptr) {
       (*from_slow)[i] = sum_lanes(slow);
     }
+  });
+}
+
+void conduct_with(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
+                  const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
+                  std::uint8_t lowest, std::uint8_t highest, double* power) {
+  const HeatRecord* all = records.data();
+  const Lane above = lowest - 0.5, below = highest + 0.5;
+  for_each_sum(members.size(), [&](std::size_t member) {
+    const std::uint32_t i = members[member];
+    const HeatRecord own = all[i];
+    thread_local ListBuffer buffer;
+    const auto list = neighbours.of(i, buffer);
+    Lane sum = 0;
+    for (std::size_t k = 0; k < list.size(); k += lane_count) {
+      const std::uint32_t* j = &list[k];
+      const Lane exchanged = exchange(own, all, j, kernel);
+      const Lane other = gather(all, j, &HeatRecord::pace);
+      sum += where_positive(other - above, where_positive(below - other, exchanged, Lane(0.0)),
+                            Lane(0.0));
+    }
+    power[member] = sum_lanes(sum);
   });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "solver/particles/kernel.hpp"
@@ -19,6 +20,14 @@ T conduction_pair(const T& conductivity_i, const T& temperature_i, const T& cond
   return volume_j * mean * gradient_factor * (temperature_i - temperature_j);
 }
 
+/// How often a particle exchanges heat, see Engine::exchange_heat().
+namespace pace {
+inline constexpr std::uint8_t slow = 0,  ///< once in a round of steps
+    every_step = 1,                      ///< in every step
+    substeps = 2,  ///< in parts of a step: it conducts too well for whole ones
+    asleep = 3;    ///< conducts as well, but is as cold as it began: not in this round
+}  // namespace pace
+
 /// What the conduction pass needs of a particle, packed into one cache line.
 struct alignas(64) HeatRecord {
   double x = void_position, y = void_position, z = void_position;  ///< m
@@ -26,7 +35,7 @@ struct alignas(64) HeatRecord {
   double temperature = 0;                                          ///< K
   double conductivity = 1;                                         ///< W m-1 K-1
   double awake = 1;  ///< 0: as cold as it began; two such exchange nothing
-  double fast = 0;   ///< 1: exchanges in every step, see Engine::exchange_heat()
+  double pace = 0;   ///< one of namespace pace
 };
 
 /// The particles that exchange heat: those awake and the neighbours of those, in increasing order.
@@ -39,13 +48,18 @@ void find_awake(const std::vector<HeatRecord>& records, const PackedLists& neigh
 void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, const std::vector<std::uint32_t>& active,
              std::vector<double>& power);
-/// What conduct() finds of slow particles beside fast ones, apart: the power from their fast
-/// neighbours into `from_fast`, that from the slow ones into `from_slow` unless it is null, W m-3.
+/// What conduct() finds of slow particles beside others, apart: the power from neighbours of
+/// `every_step` into `from_fast`, that from slow ones into `from_slow` unless it is null, W m-3.
 /// Only entries of `members` are written.
 void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
                    const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
                    std::vector<double>& from_fast, std::vector<double>* from_slow);
-/// The same for every particle.
+/// Conducted power per volume, W m-3, from those neighbours only whose pace is one from `lowest` to
+/// `highest`. @param power one for each of `members`, overwritten.
+void conduct_with(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
+                  const QuinticSpline& kernel, const std::vector<std::uint32_t>& members,
+                  std::uint8_t lowest, std::uint8_t highest, double* power);
+/// conduct() of every particle.
 void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbours,
              const QuinticSpline& kernel, std::vector<double>& power);
 
