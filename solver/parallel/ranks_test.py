@@ -61,6 +61,30 @@ class AnyNumberOfRanks(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 assert_same(self, whole, folder)
 
+    def test_grains_that_conduct_best_exchange_in_substeps_across_ranks(self):
+        """Grains of the additive in a powder bed, at a spacing where they would hold the step back."""
+        bed = self.root / "bed.h5"
+        subprocess.run([BIN / "meltproof-powder", "solver/cases/powder_1wt.toml", "--output", bed, "-q"], check=True)
+        options = ("--threads", 1, "--powder", bed, "--set", "powder.surface=powder", "--set", "spacing=7 um",
+                   "--set", "laser.exposure=60 us", "--set", "output.averaging_window=30 us")
+        whole = self.root / "grains_whole"
+        done = run_case(whole, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        steps = [float(line.split(",")[1]) for line in (whole / "history.csv").read_text().splitlines()[1:]]
+        # us: 0.125 h^2 over the diffusivity of solid AlSi10Mg, which would be the longest step.
+        self.assertGreater(max(steps), 0.125 * 7**2 / (155 / (7763 * 909.09) * 1e6) + 0.01)
+        for ranks in (2, 4):
+            with self.subTest(ranks):
+                folder = self.root / f"grains_{ranks}"
+                done = run_case(folder, *options, ranks=ranks)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                assert_same(self, whole, folder)
+        self.stop(self.root / "grains_stopped", 2, *options[2:], steps=25)
+        done = run_case(self.root / "grains_stopped", "--restart", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("goes on from", done.stderr)
+        assert_same(self, whole, self.root / "grains_stopped")
+
     def two_ranks_stop_and_one_goes_on(self, name, *options, steps):
         """Of a case that runs for seconds: mpirun takes its time to pass a signal on."""
         whole, folder = self.root / f"{name}_whole", self.root / name
