@@ -106,8 +106,21 @@ double Mixture::specific_heat(double temperature, double concentration) const {
 
 double Mixture::smallest_specific_heat_near(double temperature, double concentration) const {
   const std::size_t here = piece_of(knots_, temperature);
+  return smallest_specific_heat(here > 0 ? here - 1 : 0, std::min(here + 1, knots_.size() - 2),
+                                concentration);
+}
+
+double Mixture::smallest_specific_heat_within(double reach, double temperature,
+                                              double concentration) const {
+  return smallest_specific_heat(piece_of(knots_, temperature - reach),
+                                piece_of(knots_, temperature + reach), concentration);
+}
+
+/// On the linear pieces of the enthalpy from `first` to `last`.
+double Mixture::smallest_specific_heat(std::size_t first, std::size_t last,
+                                       double concentration) const {
   double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = here > 0 ? here - 1 : 0; i <= std::min(here + 1, knots_.size() - 2); ++i) {
+  for (std::size_t i = first; i <= last; ++i) {
     const double rise = weighted(base_enthalpy_[i + 1] - base_enthalpy_[i],
                                  additive_enthalpy_[i + 1] - additive_enthalpy_[i], concentration);
     smallest = std::min(smallest, rise / (knots_[i + 1] - knots_[i]));

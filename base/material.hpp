@@ -120,6 +120,10 @@ class Mixture {
   /// on the pieces next to it, J kg-1 K-1. A melting particle may leave its range within one step,
   /// so a stable step goes by this one and not by the large apparent specific heat of melting.
   double smallest_specific_heat_near(double temperature, double concentration) const;
+  /// The smallest specific heat between `temperature` - `reach` and `temperature` + `reach`, J kg-1
+  /// K-1: for steps that change no temperature by more than that (K).
+  double smallest_specific_heat_within(double reach, double temperature,
+                                       double concentration) const;
   /// Mass-weighted solidus and liquidus, K.
   double solidus(double concentration) const;
   double liquidus(double concentration) const;
@@ -141,6 +145,8 @@ class Mixture {
   const Material& additive() const { return additive_; }
 
  private:
+  double smallest_specific_heat(std::size_t first, std::size_t last, double concentration) const;
+
   Material base_, additive_;
   // The two enthalpies on the union of their knots, so that the inverse is one search and one
   // division.

@@ -12,16 +12,8 @@
 namespace meltproof::solver {
 namespace {
 
-/// A third more than the largest k/(rho c_p) of the base alloy below its boiling point, m2 s-1:
-/// melt with a few per cent of additive stays below it, unmixed grains of a metal that conducts
-/// better do not.
-double best_of_base(const Mixture& mixture) {
-  double best = 0;
-  for (double t = 298; t < mixture.boiling(0); ++t) {
-    best = std::max(best, mixture.conductivity(t, 0) / mixture.smallest_specific_heat_near(t, 0));
-  }
-  return 4.0 / 3 * best / mixture.density(0);
-}
+/// A step that heat holds back changes no temperature by more, K.
+constexpr double most_in_a_step = 100;
 
 Particles sorted(Particles particles, double smoothing_ratio) {
   sort_in_space(particles, 3 * smoothing_ratio * particles.spacing);
@@ -77,7 +69,15 @@ void Engine::prepare() {
   for (auto* field : {&thermal_diffusivity_, &diffusivity_, &conducted_, &source_}) {
     field->assign(particles_.size(), 0.0);
   }
-  best_of_base_ = best_of_base(mixture_);
+  // At fine spacings heat, whose steps shorten as h^2, would have shorter ones than so many of
+  // sound.
+  heat_holds_ = false;
+  if (may_open_rounds()) {
+    const FlowSettings& flow = *model_.flow;
+    heat_holds_ = thermal_limit(best_of_base()) <
+                  model_.flow_steps * flow.courant * kernel_.smoothing_length / flow.sound_speed;
+  }
+  best_of_base_ = best_of_base();
   slow_power_.resize(particles_.size(), 0.0);
   pace_.resize(particles_.size(), 0);
   if (model_.flow) {
@@ -141,6 +141,24 @@ double Engine::total_enthalpy() const { return total_of(particles_.enthalpy); }
 
 double Engine::total_additive_mass() const { return total_of(particles_.concentration); }
 
+/// The specific heat by which steps are chosen, J kg-1 K-1. Where heat does not hold them back it
+/// is taken from a wide range: nothing depends on it there but how long a round is.
+double Engine::stable_specific_heat(double temperature, double concentration) const {
+  return heat_holds_
+             ? mixture_.smallest_specific_heat_within(most_in_a_step, temperature, concentration)
+             : mixture_.smallest_specific_heat_near(temperature, concentration);
+}
+
+/// The largest k/(rho c_p) of the base alloy below its boiling point, m2 s-1. What conducts better
+/// is unmixed grains of a better conductor, and the little melt that the beam boils.
+double Engine::best_of_base() const {
+  double best = 0;
+  for (double t = 298; t < mixture_.boiling(0); ++t) {
+    best = std::max(best, mixture_.conductivity(t, 0) / stable_specific_heat(t, 0));
+  }
+  return best / mixture_.density(0);
+}
+
 /// Everything that follows from a particle's enthalpy and concentration, its record included.
 void Engine::refresh(std::size_t i) {
   if (particles_.home[i] == Home::nowhere) {
@@ -156,9 +174,8 @@ void Engine::refresh(std::size_t i) {
     particles_.melted[i] = 1;
   }
   const double conductivity = mixture_.conductivity(temperature, concentration);
-  thermal_diffusivity_[i] =
-      conductivity * particles_.volume[i] /
-      (particles_.mass[i] * mixture_.smallest_specific_heat_near(temperature, concentration));
+  thermal_diffusivity_[i] = conductivity * particles_.volume[i] /
+                            (particles_.mass[i] * stable_specific_heat(temperature, concentration));
   // The liquid part of a mushy particle diffuses, so D rises continuously from the solidus on.
   // What was lost exchanges nothing any more.
   const bool mixes = liquid > 0 && particles_.phase[i] != Phase::lost;

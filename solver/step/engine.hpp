@@ -163,6 +163,9 @@ class Engine {
   };
   void exchange_heat(const Step& step);
   bool may_open_rounds() const;
+  double thermal_limit(double diffusivity) const;
+  double stable_specific_heat(double temperature, double concentration) const;
+  double best_of_base() const;
   void open_round(const Step& step);
   void find_boundary();
   void exchange_in_substeps(double dt, int parts);
@@ -237,6 +240,7 @@ class Engine {
   std::vector<std::uint32_t> heat_active_, boundary_, substeppers_, beside_substeppers_;
   std::vector<std::uint8_t> pace_;
   double best_of_base_ = 0;         // m2 s-1: what conducts better may take substeps
+  bool heat_holds_ = false;         // the steps back, at this spacing
   std::vector<double> slow_power_;  // W m-3, that slow ones exchange among themselves
   double round_time_ = 0;           // s, so far
   std::uint64_t heat_evaluations_ = 0;

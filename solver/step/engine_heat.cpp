@@ -85,7 +85,7 @@ void Engine::exchange_heat(const Step& step) {
 
 /// Whether heat may be exchanged in rounds of steps at all.
 bool Engine::may_open_rounds() const {
-  return flow_ && model_.multirate && !model_.surface_conduction;
+  return model_.flow && model_.multirate && !model_.surface_conduction;
 }
 
 /// Who takes which pace. Fast is what has moving metal near it, or is heated or cooled quickly at

@@ -23,6 +23,13 @@ constexpr double round_over_limit = 2;
 
 }  // namespace
 
+double Engine::thermal_limit(double diffusivity) const {
+  StepExtremes heat;
+  heat.smoothing_length = kernel_.smoothing_length;
+  heat.thermal_diffusivity = diffusivity;
+  return step_limits(heat).thermal;
+}
+
 /// The step by all criteria, where it ends, and into how many steps of the flow it falls.
 Engine::Step Engine::choose_step(double until, double surface_rate) const {
   const std::size_t n = particles_.size();
@@ -96,12 +103,6 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
     step.limits.capillary = flow_limits.capillary;
     step.limits.gravity = flow_limits.gravity;
   }
-  const auto thermal_limit = [&](double diffusivity) {
-    StepExtremes heat;
-    heat.smoothing_length = kernel_.smoothing_length;
-    heat.thermal_diffusivity = diffusivity;
-    return step_limits(heat).thermal;
-  };
   const double limit_of_best = thermal_limit(extreme[best]);
   step.limits.thermal = thermal_limit(extreme[thermal]);
   // Substeps are for where those that conduct best would hold the step back. Within a round nobody

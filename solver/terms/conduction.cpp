@@ -104,16 +104,13 @@ void find_awake(const std::vector<HeatRecord>& records, const PackedLists& neigh
 namespace {
 
 /// The exchange of one particle with as many others as there are lanes, W m-3.
-[[gnu::always_inline]] inline Lane exchange(const HeatRecord& own, const HeatRecord* all,
-                                            const std::uint32_t* j, const QuinticSpline& kernel) {
-  const Lane dx = own.x - gather(all, j, &HeatRecord::x);
-  const Lane dy = own.y - gather(all, j, &HeatRecord::y);
-  const Lane dz = own.z - gather(all, j, &HeatRecord::z);
-  const Lane exchanged = conduction_pair(
-      Lane(own.conductivity), Lane(own.temperature), gather(all, j, &HeatRecord::conductivity),
-      gather(all, j, &HeatRecord::temperature), gather(all, j, &HeatRecord::volume),
-      kernel.gradient_factor(dx * dx + dy * dy + dz * dz));
-  return where_positive(own.awake + gather(all, j, &HeatRecord::awake), exchanged, Lane(0.0));
+[[gnu::always_inline]] inline Lane exchange(const HeatRecord& own, const HeatFields<Lane>& other,
+                                            const QuinticSpline& kernel) {
+  const Lane dx = own.x - other.x, dy = own.y - other.y, dz = own.z - other.z;
+  const Lane exchanged = conduction_pair(Lane(own.conductivity), Lane(own.temperature),
+                                         other.conductivity, other.temperature, other.volume,
+                                         kernel.gradient_factor(dx * dx + dy * dy + dz * dz));
+  return where_positive(own.awake + other.awake, exchanged, Lane(0.0));
 }
 
 }  // namespace
@@ -130,7 +127,7 @@ void conduct(const std::vector<HeatRecord>& records, const PackedLists& neighbou
     const auto list = neighbours.of(i, buffer);
     Lane sum = 0;
     for (std::size_t k = 0; k < list.size(); k += lane_count) {
-      sum += exchange(own, all, &list[k], kernel);
+      sum += exchange(own, gather_records<HeatFields>(all, &list[k]), kernel);
     }
     power[i] = sum_lanes(sum);
   });
@@ -147,11 +144,11 @@ void conduct_apart(const std::vector<HeatRecord>& records, const PackedLists& ne
     const auto list = neighbours.of(i, buffer);
     Lane fast = 0, slow = 0;
     for (std::size_t k = 0; k < list.size(); k += lane_count) {
-      const std::uint32_t* j = &list[k];
-      const Lane exchanged = exchange(own, all, j, kernel);
-      const Lane other = gather(all, j, &HeatRecord::pace);
-      fast += where_positive(other - 1.5, Lane(0.0), where_positive(other, exchanged, Lane(0.0)));
-      slow += where_positive(other, Lane(0.0), exchanged);
+      const auto other = gather_records<HeatFields>(all, &list[k]);
+      const Lane exchanged = exchange(own, other, kernel);
+      fast += where_positive(other.pace - 1.5, Lane(0.0),
+                             where_positive(other.pace, exchanged, Lane(0.0)));
+      slow += where_positive(other.pace, Lane(0.0), exchanged);
     }
     from_fast[i] = sum_lanes(fast);
     if (from_slow != nullptr) {
@@ -172,11 +169,10 @@ void conduct_with(const std::vector<HeatRecord>& records, const PackedLists& nei
     const auto list = neighbours.of(i, buffer);
     Lane sum = 0;
     for (std::size_t k = 0; k < list.size(); k += lane_count) {
-      const std::uint32_t* j = &list[k];
-      const Lane exchanged = exchange(own, all, j, kernel);
-      const Lane other = gather(all, j, &HeatRecord::pace);
-      sum += where_positive(other - above, where_positive(below - other, exchanged, Lane(0.0)),
-                            Lane(0.0));
+      const auto other = gather_records<HeatFields>(all, &list[k]);
+      const Lane within =
+          where_positive(below - other.pace, exchange(own, other, kernel), Lane(0.0));
+      sum += where_positive(other.pace - above, within, Lane(0.0));
     }
     power[member] = sum_lanes(sum);
   });

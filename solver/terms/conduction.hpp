@@ -29,14 +29,16 @@ inline constexpr std::uint8_t slow = 0,  ///< once in a round of steps
 }  // namespace pace
 
 /// What the conduction pass needs of a particle, packed into one cache line.
-struct alignas(64) HeatRecord {
-  double x = void_position, y = void_position, z = void_position;  ///< m
-  double volume = 0;                                               ///< m^d
-  double temperature = 0;                                          ///< K
-  double conductivity = 1;                                         ///< W m-1 K-1
-  double awake = 1;  ///< 0: as cold as it began; two such exchange nothing
-  double pace = 0;   ///< one of namespace pace
+template <class T>
+struct alignas(64) HeatFields {
+  T x = void_position, y = void_position, z = void_position;  ///< m
+  T volume = 0.0;                                             ///< m^d
+  T temperature = 0.0;                                        ///< K
+  T conductivity = 1.0;                                       ///< W m-1 K-1
+  T awake = 1.0;  ///< 0: as cold as it began; two such exchange nothing
+  T pace = 0.0;   ///< one of namespace pace
 };
+using HeatRecord = HeatFields<double>;
 
 /// The particles that exchange heat: those awake and the neighbours of those, in increasing order.
 /// A pair counts if either is awake, so what one gets the other gives, and energy stays exact.

@@ -20,21 +20,16 @@ void diffuse(const SpeciesRecords& all, const PackedLists& neighbours, const Qui
                density = own.density, concentration = own.concentration;
     Lane sum = 0;
     std::array<std::uint32_t, lane_count> places;
-    const std::uint32_t* j = places.data();
     thread_local ListBuffer buffer;
     const auto list = neighbours.of(i, buffer);
     for (std::size_t k = 0; k < list.size(); k += lane_count) {
       for (std::size_t lane = 0; lane < lane_count; ++lane) {
         places[lane] = all.place[list[k + lane]];
       }
-      const Lane dx = x - gather(records, j, &SpeciesRecord::x);
-      const Lane dy = y - gather(records, j, &SpeciesRecord::y);
-      const Lane dz = z - gather(records, j, &SpeciesRecord::z);
-      sum += species_pair(diffusivity, density, concentration,
-                          gather(records, j, &SpeciesRecord::diffusivity),
-                          gather(records, j, &SpeciesRecord::density),
-                          gather(records, j, &SpeciesRecord::concentration),
-                          gather(records, j, &SpeciesRecord::volume),
+      const auto other = gather_records<SpeciesFields>(records, places.data());
+      const Lane dx = x - other.x, dy = y - other.y, dz = z - other.z;
+      sum += species_pair(diffusivity, density, concentration, other.diffusivity, other.density,
+                          other.concentration, other.volume,
                           kernel.gradient_factor(dx * dx + dy * dy + dz * dz), weight);
     }
     rate[member] = sum_lanes(sum) / own.density;

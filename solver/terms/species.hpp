@@ -31,13 +31,16 @@ T species_pair(const T& diffusivity_i, const T& density_i, const T& concentratio
 }
 
 /// What the species pass needs of a particle, packed into one cache line.
-struct alignas(64) SpeciesRecord {
-  double x = void_position, y = void_position, z = void_position;  ///< m
-  double volume = 0;                                               ///< m^d
-  double density = 0;                                              ///< kg m-3
-  double concentration = 0;                                        ///< mass fraction
-  double diffusivity = 0;                                          ///< m2 s-1, above zero
+template <class T>
+struct alignas(64) SpeciesFields {
+  T x = void_position, y = void_position, z = void_position;  ///< m
+  T volume = 0.0;                                             ///< m^d
+  T density = 0.0;                                            ///< kg m-3
+  T concentration = 0.0;                                      ///< mass fraction
+  T diffusivity = 0.0;                                        ///< m2 s-1, above zero
+  T unused = 0.0;
 };
+using SpeciesRecord = SpeciesFields<double>;
 
 /// Those that exchange additive: only what is liquid does, a small part of all. Records, and where
 /// to find them.
@@ -48,8 +51,8 @@ struct SpeciesRecords {
 
 /// Rate of change of the concentration, 1/s. @param members particles that exchange;
 /// @param rate one for each of them, overwritten.
-void diffuse(const SpeciesRecords& all, const PackedLists& neighbours,
-             const QuinticSpline& kernel, SpeciesFactor factor,
-             const std::vector<std::uint32_t>& members, std::vector<double>& rate);
+void diffuse(const SpeciesRecords& all, const PackedLists& neighbours, const QuinticSpline& kernel,
+             SpeciesFactor factor, const std::vector<std::uint32_t>& members,
+             std::vector<double>& rate);
 
 }  // namespace meltproof::solver
