@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/flow/free_surface.hpp"
+#include "solver/particles/loops.hpp"
 
 namespace meltproof::solver {
 
@@ -12,26 +13,34 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
                                  const PackedLists& list) {
   const std::size_t n = particles.size();
   role_.assign(n, 0);
-  for (auto* members : {&liquid_, &wall_, &liquid_copies_, &wall_copies_}) {
-    members->clear();
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (particles.phase[i] == Phase::liquid && particles.home[i] != Home::nowhere) {
-      (particles.home[i] == Home::here ? liquid_ : liquid_copies_).push_back(i);
+  wall_copies_.clear();
+  const auto melt_of = [&](Home home, std::vector<std::uint32_t>& members) {
+    select_indices(
+        n,
+        [&](std::uint32_t i) {
+          return particles.phase[i] == Phase::liquid && particles.home[i] == home;
+        },
+        members);
+    for (const std::uint32_t i : members) {
       role_[i] = 1;
     }
+  };
+  melt_of(Home::here, liquid_);
+  liquid_copies_.clear();
+  if (!halo_.empty()) {
+    melt_of(Home::elsewhere, liquid_copies_);
   }
-  for (const std::uint32_t i : liquid_) {
-    list.each(i, [&](std::uint32_t j) {
+  for_each_sum(liquid_.size(), [&](std::size_t k) {
+    list.each(liquid_[k], [&](std::uint32_t j) {
       const std::uint32_t source = j < n ? j : ghosts[j - n].source;
-      if (role_[source] == 0 && particles.phase[source] == Phase::solid) {
+      if (particles.phase[source] == Phase::solid) {
+#pragma omp atomic write
         role_[source] = 2;
-        if (particles.home[source] == Home::here) {
-          wall_.push_back(source);
-        }
       }
     });
-  }
+  });
+  select_indices(
+      n, [&](std::uint32_t i) { return role_[i] == 2 && particles.home[i] == Home::here; }, wall_);
   if (settings_.walls_everywhere) {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (role_[i] == 0 && particles.phase[i] == Phase::solid && particles.home[i] == Home::here) {
@@ -78,48 +87,49 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
 void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
                                      const PackedLists& list) {
   const std::size_t n = particles.size();
-  particle_.clear();
   near_ghosts_.clear();
-  behind_walls_.clear();
   // Of particles and, behind them, images and the void.
-  std::vector<std::uint32_t> slot_of(list.void_index + std::size_t{1}, nowhere);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (role_[i] != 0) {
-      slot_of[i] = static_cast<std::uint32_t>(particle_.size());
-      particle_.push_back(i);
-    }
-  }
+  slot_.assign(list.void_index + std::size_t{1}, nowhere);
+  select_indices(
+      n, [&](std::uint32_t i) { return role_[i] != 0; }, particle_);
+  for_each_particle(particle_.size(),
+                    [&](std::size_t s) { slot_[particle_[s]] = static_cast<std::uint32_t>(s); });
   auto next = static_cast<std::uint32_t>(particle_.size());
   for (std::uint32_t g = 0; g < ghosts.size(); ++g) {
     if (role_[ghosts[g].source] != 0) {
-      slot_of[n + g] = next++;
+      slot_[n + g] = next++;
       near_ghosts_.push_back(g);
     }
   }
   list_.void_index = melt_near_wall_.void_index = next++;
-  slot_of[list.void_index] = list_.void_index;
+  slot_[list.void_index] = list_.void_index;
   std::vector<std::uint8_t> behind(list.void_index + std::size_t{1}, 0);
-  for (const std::uint32_t i : wall_) {
-    // Written always: no branch to be guessed wrong.
-    list.each(i, [&](std::uint32_t j) { behind[j] |= slot_of[j] == nowhere ? 1 : 0; });
-  }
-  for (std::uint32_t j = 0; j < list.void_index; ++j) {
-    if (behind[j] == 0) {
-      continue;
-    }
+  for_each_sum(wall_.size(), [&](std::size_t k) {
+    list.each(wall_[k], [&](std::uint32_t j) {
+      if (slot_[j] == nowhere) {
+#pragma omp atomic write
+        behind[j] = 1;
+      }
+    });
+  });
+  std::vector<std::uint32_t> found;
+  select_indices(
+      list.void_index, [&](std::uint32_t j) { return behind[j] != 0; }, found);
+  behind_walls_.clear();
+  for (const std::uint32_t j : found) {
     // What was lost takes part in nothing.
     if (particles.phase[j < n ? j : ghosts[j - n].source] == Phase::lost) {
-      slot_of[j] = list_.void_index;
+      slot_[j] = list_.void_index;
     } else {
-      slot_of[j] = next++;
+      slot_[j] = next++;
       behind_walls_.push_back(j);
     }
   }
-  translate_lists(slot_of, list);
-  slot_.assign(slot_of.begin(), slot_of.begin() + static_cast<std::ptrdiff_t>(n));
-  for (std::uint32_t i = 0; i < n; ++i) {
-    slot_[i] = role_[i] != 0 ? slot_[i] : nowhere;
+  translate_lists(list);
+  for (const std::uint32_t j : found) {
+    slot_[j] = nowhere;
   }
+  slot_.resize(n);
   const auto slots = [&](const std::vector<std::uint32_t>& members,
                          std::vector<std::uint32_t>& out) {
     out.resize(members.size());
@@ -132,56 +142,62 @@ void FreeSurfaceFlow::hand_out_slots(const Particles& particles, const std::vect
 }
 
 /// The flow's lists: those of melt and walls, entry by entry, so that sums keep their order.
-/// @param slot_of of particles, images and the void.
-void FreeSurfaceFlow::translate_lists(const std::vector<std::uint32_t>& slot_of,
-                                      const PackedLists& list) {
+void FreeSurfaceFlow::translate_lists(const PackedLists& list) {
   list_.reach = list.reach;
-  list_.first.assign(particle_.size(), 0);
-  list_.last.assign(particle_.size(), 0);
-  std::size_t end = 0;
-  for (std::size_t s = 0; s < particle_.size(); ++s) {
-    const std::uint32_t i = particle_[s];
-    list_.first[s] = list_place(end);
-    const std::size_t count = list.count(i);  // nothing of copies
-    end += (count + lane_count - 1) / lane_count * lane_count;
-    list_.last[s] = list_place(end);
-  }
-  list_.index.resize(end);
-  const auto slot = [&](std::uint32_t j) {
-    return slot_of[j] == nowhere ? list_.void_index : slot_of[j];
+  const auto place = [](NeighbourList& lists, const std::vector<std::uint32_t>& lengths) {
+    lists.first.resize(lengths.size());
+    lists.last.resize(lengths.size());
+    std::size_t end = 0;
+    for (std::size_t k = 0; k < lengths.size(); ++k) {
+      lists.first[k] = list_place(end);
+      end += (lengths[k] + lane_count - 1) / lane_count * lane_count;
+      lists.last[k] = list_place(end);
+    }
+    lists.index.resize(end);
   };
+  std::vector<std::uint32_t> lengths(particle_.size());
+  for_each_particle(lengths.size(), [&](std::size_t s) {
+    lengths[s] = static_cast<std::uint32_t>(list.count(particle_[s]));  // nothing of copies
+  });
+  place(list_, lengths);
   for_each_sum(particle_.size(), [&](std::size_t s) {
     thread_local ListBuffer buffer;
     const auto entries = list.of(particle_[s], buffer);
-    std::transform(entries.begin(), entries.end(),
-                   list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]), slot);
+    std::transform(
+        entries.begin(), entries.end(),
+        list_.index.begin() + static_cast<std::ptrdiff_t>(list_.first[s]),
+        [&](std::uint32_t j) { return slot_[j] == nowhere ? list_.void_index : slot_[j]; });
   });
   // A wall listens to the melt only, which is a small part of its list.
   std::vector<std::uint8_t> is_melt(list_.void_index + std::size_t{1} + behind_walls_.size(), 0);
-  for (std::size_t s = 0; s < particle_.size(); ++s) {
-    is_melt[s] = role_[particle_[s]] == 1 ? 1 : 0;
-  }
-  melt_near_wall_.first.clear();
-  melt_near_wall_.last.clear();
-  std::vector<std::uint32_t>& melt = melt_near_wall_.index;
-  melt.clear();
-  for (const std::uint32_t i : wall_) {
-    const std::uint32_t s = slot_of[i];
-    const std::size_t begin = melt.size();
-    melt_near_wall_.first.push_back(list_place(begin));
+  for_each_particle(particle_.size(),
+                    [&](std::size_t s) { is_melt[s] = role_[particle_[s]] == 1 ? 1 : 0; });
+  const auto melt_of = [&](std::size_t k, const auto& visit) {
+    const std::uint32_t s = slot_[wall_[k]];
+    for (std::size_t e = list_.first[s]; e < list_.last[s]; ++e) {
+      visit(list_.index[e], is_melt[list_.index[e]]);
+    }
+  };
+  lengths.assign(wall_.size(), 0);
+  for_each_sum(wall_.size(), [&](std::size_t k) {
+    melt_of(k, [&](std::uint32_t, std::uint8_t melt) { lengths[k] += melt; });
+  });
+  place(melt_near_wall_, lengths);
+  for_each_sum(wall_.size(), [&](std::size_t k) {
+    thread_local std::vector<std::uint32_t> found;
+    found.resize(lengths[k] + std::size_t{1});
     // Written always and counted if it belongs there: no branch to be guessed wrong.
-    melt.resize(begin + list_.last[s] - list_.first[s] + 1);
-    std::size_t at = begin;
-    for (std::size_t k = list_.first[s]; k < list_.last[s]; ++k) {
-      melt[at] = list_.index[k];
-      at += is_melt[list_.index[k]];
-    }
-    melt.resize(at);
-    while ((melt.size() - begin) % lane_count != 0) {
-      melt.push_back(list_.void_index);
-    }
-    melt_near_wall_.last.push_back(list_place(melt.size()));
-  }
+    std::size_t n = 0;
+    melt_of(k, [&](std::uint32_t slot, std::uint8_t melt) {
+      found[n] = slot;
+      n += melt;
+    });
+    const auto begin =
+        melt_near_wall_.index.begin() + static_cast<std::ptrdiff_t>(melt_near_wall_.first[k]);
+    const auto end =
+        melt_near_wall_.index.begin() + static_cast<std::ptrdiff_t>(melt_near_wall_.last[k]);
+    std::fill(std::copy_n(found.begin(), n, begin), end, list_.void_index);
+  });
 }
 
 /// Every field as long as there are slots, empty.
@@ -212,12 +228,10 @@ void FreeSurfaceFlow::forget() {
 void FreeSurfaceFlow::arrange(const Particles& particles, const std::vector<Ghost>& ghosts,
                               const PackedLists& list) {
   // What is known of those who were there, by particle.
-  std::vector<std::pair<std::uint32_t, FlowParticle>> known;
-  for (std::uint32_t i = 0; i < slot_.size(); ++i) {
-    if (slot_[i] != nowhere) {
-      known.emplace_back(i, particle(i));
-    }
-  }
+  std::vector<std::pair<std::uint32_t, FlowParticle>> known(slot_.empty() ? 0 : particle_.size());
+  for_each_particle(known.size(), [&](std::size_t s) {
+    known[s] = {particle_[s], particle(particle_[s])};
+  });
   known.insert(known.end(), arrived_.begin(), arrived_.end());
   arrived_.clear();
   find_roles(particles, ghosts, list);

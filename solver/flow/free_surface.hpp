@@ -204,7 +204,7 @@ class FreeSurfaceFlow {
                   const PackedLists& list);
   void hand_out_slots(const Particles& particles, const std::vector<Ghost>& ghosts,
                       const PackedLists& list);
-  void translate_lists(const std::vector<std::uint32_t>& slot_of, const PackedLists& list);
+  void translate_lists(const PackedLists& list);
   void fit();
   void place_standing(const Particles& particles, const std::vector<Ghost>& ghosts);
   void make_room_for_near();

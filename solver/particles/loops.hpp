@@ -45,4 +45,23 @@ double block_max(std::size_t n, double least, const Value& value) {
   return result;
 }
 
+/// Those i < n for which test(i) holds, in order, on all threads.
+template <class Test>
+void select_indices(std::size_t n, const Test& test, std::vector<std::uint32_t>& chosen) {
+  constexpr std::size_t block = 65536;
+  std::vector<std::vector<std::uint32_t>> parts((n + block - 1) / block);
+  for_each_in_chunks(parts.size(), 1, 1, [&](std::size_t b) {
+    const auto end = static_cast<std::uint32_t>(std::min(n, (b + 1) * block));
+    for (auto i = static_cast<std::uint32_t>(b * block); i < end; ++i) {
+      if (test(i)) {
+        parts[b].push_back(i);
+      }
+    }
+  });
+  chosen.clear();
+  for (const auto& part : parts) {
+    chosen.insert(chosen.end(), part.begin(), part.end());
+  }
+}
+
 }  // namespace meltproof::solver

@@ -141,12 +141,8 @@ void Engine::sort_particles() {
 
 /// Of the lists just made, at the places for which they were made.
 void Engine::find_movers() {
-  movers_.clear();
-  for (std::uint32_t i = 0; i < mobile_.size(); ++i) {
-    if (mobile_[i] != 0) {
-      movers_.push_back(i);
-    }
-  }
+  select_indices(
+      mobile_.size(), [&](std::uint32_t i) { return mobile_[i] != 0; }, movers_);
   built_at_.resize(movers_.size());
   std::transform(movers_.begin(), movers_.end(), built_at_.begin(),
                  [&](std::uint32_t i) { return particles_.position[i]; });
@@ -166,11 +162,11 @@ void Engine::rebuild_lists(bool everything) {
     sort_particles();
   }
   const std::vector<std::uint8_t> before = mobile_;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
+  for_each_particle(particles_.size(), [&](std::size_t i) {
     const bool moves = particles_.phase[i] == Phase::liquid ||
                        (particles_.phase[i] == Phase::solid && particles_.liquid_fraction[i] > 0);
     mobile_[i] = moves && particles_.home[i] != Home::nowhere ? 1 : 0;
-  }
+  });
   Moved moved;
   if (!everything && !ranks().alone()) {
     if (out_of_balance()) {
@@ -227,12 +223,15 @@ void Engine::rebuild_lists(bool everything) {
 void Engine::advance_flow(double dt, int steps) {
   Stopwatch watch;
   if (change_phases()) {
-    bool unlisted = false;
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
-      unlisted = unlisted || (particles_.home[i] != Home::nowhere &&
-                              particles_.phase[i] == Phase::liquid && mobile_[i] == 0);
-    }
-    if (ranks().any(unlisted)) {
+    std::vector<std::uint32_t> unlisted;
+    select_indices(
+        particles_.size(),
+        [&](std::uint32_t i) {
+          return particles_.phase[i] == Phase::liquid && mobile_[i] == 0 &&
+                 particles_.home[i] != Home::nowhere;
+        },
+        unlisted);
+    if (ranks().any(!unlisted.empty())) {
       rebuild_lists(false);
     } else {
       flow_->arrange(particles_, ghosts_, neighbours_.list());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What melts, freezes, or leaves the domain.
+#include "solver/particles/loops.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
@@ -9,19 +10,25 @@ bool Engine::change_phases() {
   const std::size_t n = particles_.size();
   const PackedLists& list = neighbours_.list();
   const double touch = 2.25 * particles_.spacing * particles_.spacing;
-  std::vector<std::uint32_t> freezing;
+  std::vector<std::uint32_t> crossing, freezing;
   bool changed = false;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    if (particles_.home[i] != Home::here) {
-      continue;
-    }
-    const double fraction = particles_.liquid_fraction[i];
-    if (particles_.phase[i] == Phase::solid && fraction >= 1) {
+  select_indices(
+      n,
+      [&](std::uint32_t i) {
+        const Phase phase = particles_.phase[i];
+        const double fraction = particles_.liquid_fraction[i];
+        return particles_.home[i] == Home::here &&
+               ((phase == Phase::solid && fraction >= 1) ||
+                (phase == Phase::liquid && fraction < model_.freezing_fraction));
+      },
+      crossing);
+  for (const std::uint32_t i : crossing) {
+    if (particles_.phase[i] == Phase::solid) {
       particles_.phase[i] = Phase::liquid;
       particles_.velocity[i] = {};
       particles_.density[i] = particles_.mass[i] / particles_.volume[i];
       changed = true;
-    } else if (particles_.phase[i] == Phase::liquid && fraction < model_.freezing_fraction) {
+    } else {
       freezing.push_back(i);
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "solver/particles/loops.hpp"
 #include "solver/step/engine.hpp"
 
 namespace meltproof::solver {
@@ -42,12 +43,10 @@ void Engine::fill_species_records(const std::vector<double>& concentration) {
 
 void Engine::advance_species(double dt) {
   // Only liquid particles exchange: D is zero in the solid, and the pair term with it.
-  liquid_.clear();
-  for (std::uint32_t i = 0; i < particles_.size(); ++i) {
-    if (diffusivity_[i] > 0 && particles_.home[i] != Home::nowhere) {
-      liquid_.push_back(i);
-    }
-  }
+  select_indices(
+      particles_.size(),
+      [&](std::uint32_t i) { return diffusivity_[i] > 0 && particles_.home[i] != Home::nowhere; },
+      liquid_);
   if (!ranks().any(!liquid_.empty())) {
     return;
   }
