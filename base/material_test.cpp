@@ -181,6 +181,19 @@ TEST(Enthalpy, OfTheMixtureIsInvertedExactlyAtAnyConcentration) {
   EXPECT_LT(worst, 1e-12);
 }
 
+TEST(Enthalpy, TheSmallestSpecificHeatIsThatOfThePiecesInReach) {
+  const Mixture plate(steel(), steel());
+  // 316L: 458.93 up to 922.44 K, 714.29 up to the solidus of 1633 K, 5494.51, 847.46 from 1683 K
+  // on.
+  EXPECT_NEAR(plate.smallest_specific_heat_near(1500, 0), 458.93, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1500, 0), 714.29, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1020, 0), 458.93, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1025, 0), 714.29, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(10, 1650, 0), 5494.51, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1650, 0), 714.29, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(100, 9000, 0), 847.46, 0.01);
+}
+
 TEST(Enthalpy, OfTheMixtureIsTheMassWeightedSum) {
   for (const double t : {200., 500., 830., 922.44, 1200., 1650., 2800., 4000.}) {
     const double expected = 0.7 * steel().enthalpy(t) + 0.3 * aluminium().enthalpy(t);

@@ -128,7 +128,8 @@ InputTable flow_table(FlowInput& f) {
       .flag(
           f.two_paces,
           {.name = "heat_in_two_paces",
-           .about = "Metal far from the melt conducts heat in steps as long as conduction allows."})
+           .about = "Metal far from the melt conducts heat in steps as long as conduction allows; "
+                    "where heat holds the steps back, what conducts best does so in parts of one."})
       .quantity(s.skin, {.name = "skin",
                          .unit = "1",
                          .about = "Skin of the Verlet lists, in spacings.",

@@ -233,6 +233,11 @@ class TrackRun {
     keep([&] { place = checkpoints_.write(*engine_, run_, provenance_); });
     written_ = std::chrono::steady_clock::now();
     if (stopping) {
+      if (!options_.quiet && ranks_.root()) {
+        provenance_.wall_time = run_.wall_time;
+        fmt::print("{}: {}\n", options_.name,
+                   time_line(step_timings(*engine_), provenance_, engine_->steps()));
+      }
       throw Stopped(
           fmt::format("at {:.1f} of {:.1f} us, with a checkpoint in {}; the same command with "
                       "--restart goes on "

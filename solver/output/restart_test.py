@@ -48,12 +48,12 @@ class Restart(unittest.TestCase):
 
     def stop_at_a_checkpoint(self, folder, *options):
         """Stops the run by SIGTERM as soon as it has written two checkpoints."""
-        run = subprocess.Popen(command(folder, "--checkpoint-steps", 25, *options), stdout=subprocess.DEVNULL,
+        run = subprocess.Popen(command(folder, "--checkpoint-steps", 25, *options), stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE, text=True)
         while len(self.checkpoints(folder)) < 2 and run.poll() is None:
             time.sleep(0.002)
         run.send_signal(signal.SIGTERM)
-        _, said = run.communicate(timeout=120)
+        self.printed, said = run.communicate(timeout=120)
         return run.returncode, said
 
     def checkpoints(self, folder):
@@ -67,6 +67,7 @@ class Restart(unittest.TestCase):
         status, said = self.stop_at_a_checkpoint(folder, "--threads", 1)
         self.assertEqual(status, 5, said)
         self.assertIn("--restart", said)
+        self.assertRegex(self.printed, r"time: .*heat .*%.*flow .*%.*in all .* on 1 thread, \d+ steps")
         self.assertFalse((folder / "run.h5").exists())
         self.assertLessEqual(len(self.checkpoints(folder)), 2)
         done = run_case(folder, "--threads", 2, "--restart")

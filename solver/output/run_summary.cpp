@@ -41,6 +41,24 @@ nlohmann::json timings_json(const Timings& timings) {
   return j;
 }
 
+std::string time_line(const Timings& timings, const Provenance& provenance, std::size_t steps) {
+  double sum = 0;
+  for (const auto& [part, seconds] : timings) {
+    sum += seconds;
+  }
+  const double wall = std::max(provenance.wall_time, sum);
+  std::string parts;
+  for (const auto& [part, seconds] : timings) {
+    if (seconds >= 1e-3 * wall) {
+      parts +=
+          fmt::format("{} {} ({:.0f} %), ", part, duration_text(seconds), 100 * seconds / wall);
+    }
+  }
+  return fmt::format("time: {}other {}; in all {} on {} thread{}, {} steps", parts,
+                     duration_text(wall - sum), duration_text(wall), provenance.threads,
+                     provenance.threads == 1 ? "" : "s", steps);
+}
+
 std::string run_summary(const nlohmann::json& result, const Acceptance& acceptance,
                         const Timings& timings, const Provenance& provenance,
                         const std::filesystem::path& folder) {
@@ -55,22 +73,8 @@ std::string run_summary(const nlohmann::json& result, const Acceptance& acceptan
       number(result, "energy_relative_error"), number(result, "species_relative_error"),
       number(result, "beam_balance_relative_error"));
   out += acceptance.table();
-  double sum = 0;
-  for (const auto& [part, seconds] : timings) {
-    sum += seconds;
-  }
-  const double wall = std::max(provenance.wall_time, sum);
-  std::string parts;
-  for (const auto& [part, seconds] : timings) {
-    if (seconds >= 1e-3 * wall) {
-      parts +=
-          fmt::format("{} {} ({:.0f} %), ", part, duration_text(seconds), 100 * seconds / wall);
-    }
-  }
-  out += fmt::format("  time: {}other {}; in all {} on {} thread{}, {} steps\n", parts,
-                     duration_text(wall - sum), duration_text(wall), provenance.threads,
-                     provenance.threads == 1 ? "" : "s",
-                     static_cast<long long>(number(result, "steps")));
+  out += fmt::format(
+      "  {}\n", time_line(timings, provenance, static_cast<std::size_t>(number(result, "steps"))));
   out += fmt::format("  {} {}, revision {}", provenance.program, suite_version(), code_revision());
   for (const auto& [library, version] : provenance.libraries) {
     out += fmt::format(", {} {}", library, version);

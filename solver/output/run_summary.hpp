@@ -30,6 +30,9 @@ using Timings = std::vector<std::pair<std::string, double>>;
 /// The timings as an object "part_s": seconds.
 nlohmann::json timings_json(const Timings& timings);
 
+/// Where the time went so far, on one line; parts below a thousandth are left out.
+std::string time_line(const Timings& timings, const Provenance& provenance, std::size_t steps);
+
 /// The last words of a run: pool and steadiness, what is conserved, the acceptance table, where the
 /// time went (parts below a thousandth are left out), versions, and the files with the resolved
 /// input. @param result as in result.json.
