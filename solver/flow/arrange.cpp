@@ -14,21 +14,22 @@ void FreeSurfaceFlow::find_roles(const Particles& particles, const std::vector<G
   const std::size_t n = particles.size();
   role_.assign(n, 0);
   wall_copies_.clear();
-  const auto melt_of = [&](Home home, std::vector<std::uint32_t>& members) {
-    select_indices(
-        n,
-        [&](std::uint32_t i) {
-          return particles.phase[i] == Phase::liquid && particles.home[i] == home;
-        },
-        members);
-    for (const std::uint32_t i : members) {
-      role_[i] = 1;
-    }
-  };
-  melt_of(Home::here, liquid_);
+  select_indices(
+      n,
+      [&](std::uint32_t i) {
+        return particles.phase[i] == Phase::liquid && particles.home[i] != Home::nowhere;
+      },
+      liquid_);
+  for (const std::uint32_t i : liquid_) {
+    role_[i] = 1;
+  }
   liquid_copies_.clear();
   if (!halo_.empty()) {
-    melt_of(Home::elsewhere, liquid_copies_);
+    const auto copies = std::stable_partition(liquid_.begin(), liquid_.end(), [&](std::uint32_t i) {
+      return particles.home[i] == Home::here;
+    });
+    liquid_copies_.assign(copies, liquid_.end());
+    liquid_.erase(copies, liquid_.end());
   }
   for_each_sum(liquid_.size(), [&](std::size_t k) {
     list.each(liquid_[k], [&](std::uint32_t j) {
