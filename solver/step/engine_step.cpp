@@ -107,9 +107,8 @@ Engine::Step Engine::choose_step(double until, double surface_rate) const {
   step.limits.thermal = thermal_limit(extreme[thermal]);
   // Substeps are for where those that conduct best would hold the step back. Within a round nobody
   // changes pace.
-  const bool substeps =
-      extreme[best] > 0 &&
-      (round_open_ || (may_open_rounds() && extreme[melt] > 0 && limit_of_best < dt));
+  const bool substeps = extreme[best] > 0 &&
+                        (round_open_ || (heat_holds_ && extreme[melt] > 0 && limit_of_best < dt));
   if (!substeps) {
     step.limits.thermal = std::min(step.limits.thermal, limit_of_best);
   }
