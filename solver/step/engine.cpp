@@ -142,7 +142,7 @@ double Engine::total_enthalpy() const { return total_of(particles_.enthalpy); }
 double Engine::total_additive_mass() const { return total_of(particles_.concentration); }
 
 /// The specific heat by which steps are chosen, J kg-1 K-1. Where heat does not hold them back it
-/// is taken from a wide range: nothing depends on it there but how long a round is.
+/// is taken from a wide range, which costs little there; what was computed so keeps its bits.
 double Engine::stable_specific_heat(double temperature, double concentration) const {
   return heat_holds_
              ? mixture_.smallest_specific_heat_within(most_in_a_step, temperature, concentration)
