@@ -190,6 +190,7 @@ TEST(Enthalpy, TheSmallestSpecificHeatIsThatOfThePiecesInReach) {
   EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1020, 0), 458.93, 0.01);
   EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1025, 0), 714.29, 0.01);
   EXPECT_NEAR(plate.smallest_specific_heat_within(10, 1650, 0), 5494.51, 0.01);
+  EXPECT_NEAR(plate.smallest_specific_heat_within(20, 1670, 0), 847.46, 0.01);
   EXPECT_NEAR(plate.smallest_specific_heat_within(100, 1650, 0), 714.29, 0.01);
   EXPECT_NEAR(plate.smallest_specific_heat_within(100, 9000, 0), 847.46, 0.01);
 }

@@ -10,6 +10,7 @@
 #include "solver/particles/ghosts.hpp"
 #include "solver/particles/kernel.hpp"
 #include "solver/particles/lanes.hpp"
+#include "solver/particles/loops.hpp"
 #include "solver/particles/moving_neighbours.hpp"
 
 namespace meltproof::solver {
@@ -282,6 +283,20 @@ TEST(SpaceOrder, DependsOnTheParticlesAlone) {
   sort_in_space(backward, 0.3);
   EXPECT_EQ(forward.identity, backward.identity);
   EXPECT_EQ(forward.position, backward.position);
+}
+
+TEST(Loops, IndicesAreSelectedInOrderAcrossBlocks) {
+  const auto test = [](std::uint32_t i) { return i % 7 == 3 || i == 65535 || i == 65536; };
+  for (const std::size_t n : {0U, 3U, 65536U, 200001U}) {
+    std::vector<std::uint32_t> expected, chosen{42};
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (test(i)) {
+        expected.push_back(i);
+      }
+    }
+    select_indices(n, test, chosen);
+    EXPECT_EQ(chosen, expected) << n;
+  }
 }
 
 }  // namespace meltproof::solver

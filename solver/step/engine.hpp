@@ -57,7 +57,8 @@ struct Model {
   /// With flow: acoustic steps in a thermal one, at most.
   int flow_steps = 10;
   /// With flow: metal whose temperature changes slowly conducts heat in steps as long as conduction
-  /// allows, see exchange_heat(); false: in every step.
+  /// allows, and at fine spacings what conducts best in parts of one, see exchange_heat(); false:
+  /// all in every step.
   bool multirate = true;
   /// False: all neighbour lists are remade each time, those of what cannot have changed, too; for
   /// measuring what is gained.

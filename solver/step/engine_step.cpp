@@ -157,7 +157,7 @@ void Engine::apply(double dt) {
         (conducted_[i] == 0 && source_[i] == 0 && diffusivity_[i] == 0)) {
       return;
     }
-    const bool whole_round = round_closes_ && pace_[i] == 0;
+    const bool whole_round = round_closes_ && pace_[i] == pace::slow;
     Crossing c{.particle = static_cast<std::uint32_t>(i),
                .old_enthalpy = particles_.enthalpy[i],
                .old_temperature = particles_.temperature[i],
